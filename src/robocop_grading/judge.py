@@ -202,12 +202,14 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         own = [_judge(it, plan, by_name, problems.get(part, "")) for it in plan.checks if it.part == part]
         checks += _with_reasons(own, by_name)
     found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
+    notes: List[str] = []
     for part, by_name in records.items():
-        said = [*_end_of(part, by_name, plan), *about_pending(by_name, plan.limits), *_programs(by_name)]
+        found += [f"{part}: {it}" for it in _end_of(part, by_name, plan)]
+        said = [*about_pending(by_name, plan.limits), *_programs(by_name)]
         if any(check.outcome is not Outcome.PASSED for check in checks):
             said += [*_unpublished(by_name), *_wrong_types(by_name, checks)]
-        found += [f"{part}: {it}" for it in dict.fromkeys(said)]
-    return Grade(name, tuple(checks), tuple(found))
+        notes += [f"{part}: {it}" for it in dict.fromkeys(said)]
+    return Grade(name, tuple(checks), tuple(found), tuple(notes))
 
 
 def _programs(records: Mapping[str, Record]) -> List[str]:

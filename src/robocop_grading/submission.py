@@ -120,14 +120,14 @@ def _folder(top: Path, share: Path, state: Path, builds: Path, sandbox: Optional
         raise HostingError(f"{error}; {SEVERAL}") from error
     if package is None:
         return _loose(choices, top, share, state)
-    return _package(package, share, state, builds, sandbox)
+    return replace(_package(package, share, state, builds, sandbox), name=top.name)
 
 
 def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -> Submission:
     """Single files in `top`, run in place, on top of the skeleton's package."""
-    name, folder = (top.stem, top.parent) if top.is_file() else (top.name, top)
+    folder = top.parent if top.is_file() else top
     reads = [top, _lab_folder(state)]  # `top` may contain helper modules
-    return _ready(name, folder, reads, lab_environment(share, state), Started(choices, {}, ()), is_loose=True)
+    return _ready(top.name, folder, reads, lab_environment(share, state), Started(choices, {}, ()), is_loose=True)
 
 
 def _ready(

@@ -17,6 +17,7 @@ from ..report.write import write
 from ..runner import Runner
 from ..sandbox.bubblewrap import open_sandbox
 from ..submission import prepare_submission
+from ..texts import shortened
 from .hand_ins import unpacked
 from .results import Results
 
@@ -43,8 +44,8 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
         except Exception as error:  # a hand-in that breaks the grader affects only its own row
             report.mkdir(exist_ok=True)
             problem = str(error) if isinstance(error, RobocopError) else f"could not be graded: {error!r}"
-            problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MAX_PROBLEM]
-            write(Grade(shown(path), (), (problem, *notes)), plan, {}, report)
+            problem = shortened(problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", ""), MAX_PROBLEM)
+            write(Grade(shown(path), (), (problem,), tuple(notes)), plan, {}, report)
         results.keep(path.name, digest, report, time.monotonic() - started)
 
 

@@ -27,7 +27,7 @@ class Person(NamedTuple):
 
     identifier: str = ""  # Moodle's
     full_name: str = ""
-    email: str = ""  # Gradescope's, as the next one
+    email: str = ""  # from Gradescope, as is the student's number
     sid: str = ""
 
 

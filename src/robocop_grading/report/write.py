@@ -18,7 +18,7 @@ from ..errors import GradingSetupError
 from ..judge import CheckResult, Grade, Mistake, Outcome, Records, scored
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
-from ..texts import printable, printable_lines
+from ..texts import printable, printable_lines, shortened
 from .plots import svg
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
@@ -204,6 +204,7 @@ _PAGES.filters.update(
     one_line=printable,
     points=lambda points: "–" if points is None else f"{points:g}",
     printable=printable_lines,
+    shortened=shortened,
     quoted=lambda name: quote(os.fsencode(name)),  # a file's name, whatever bytes it consists of, as part of a URL
 )
 

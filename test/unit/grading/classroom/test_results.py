@@ -8,11 +8,11 @@ from grading_records import PLAN, judged, keep
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robocop_grading.classroom.results import Result, Results, page
+from robocop_grading.classroom.results import Results, StoredGrade, page
 from robocop_grading.classroom.table import table
 
 RESULTS = (
-    Result(
+    StoredGrade(
         "=anna",
         (
             judged("cancel", "server", 0.0, "<cause> at 1.5"),
@@ -20,8 +20,8 @@ RESULTS = (
             judged("goal_frame", "bridge", 1.0, extra=True),
         ),
     ),
-    Result("ben", (judged("cancel", "server", 0.0, "<cause> at -3"),), ("=cmd",)),
-    Result("carl", (), ("nothing to grade",)),
+    StoredGrade("ben", (judged("cancel", "server", 0.0, "<cause> at -3"),), ("=cmd",)),
+    StoredGrade("carl", (), ("nothing to grade",)),
 )
 
 
@@ -68,7 +68,7 @@ def test_table_has_one_row_per_hand_in_and_no_spreadsheet_formulas():
 
 @given(st.text(), st.text())
 def test_no_name_or_problem_controls_a_spreadsheet_whatever_separator_it_is_read_with(name, problem):
-    text = table([Result(name, (), (problem,))], PLAN, {name: problem})
+    text = table([StoredGrade(name, (), (problem,))], PLAN, {name: problem})
     assert len(read(text)) == 2
     for separator in ",;\t":
         for row in csv.reader(io.StringIO(text[1:]), delimiter=separator):
