@@ -100,7 +100,7 @@ def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[
 
 
 def report_folder(reports: Path, path: str, is_whole: bool) -> Path:
-    """The folder in `reports` with the path of the submission as it was given: the names of files are often the same."""
+    """The folder with the path of the submission as it was given: names of files alone are often the same."""
     parts = [part for part in Path(os.path.normpath(path)).parts if part not in (os.sep, "//", os.pardir)]
     folder = reports.joinpath(*(parts or [Path(os.path.realpath(path)).name]))
     return folder if is_whole else folder.with_name(f"{folder.name}-only")

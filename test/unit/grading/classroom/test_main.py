@@ -68,3 +68,16 @@ def test_class_says_how_fast_it_is_and_who_is_not_gradable_and_why(group, monkey
         "not gradable: řehoř: no grade: the machine had no time",
     ]
     assert made.figures.not_judged == 2
+
+
+def test_time_left_is_estimated_from_hand_ins_that_ran(group, monkeypatch):
+    made = group(["ben"])
+    monkeypatch.setattr(made, "_started", time.monotonic() - 30.0)
+    made.add("ben", "")
+    assert made.pace == "", "what can't be graded takes no time"
+    made.waiting["carl.zip"] = ""  # it can't be read
+    keep(made.results, "řehoř", 8.0)
+    made.add("řehoř", "")
+    assert made.pace == ""
+    made.waiting["anna"] = "a digest"
+    assert made.pace == "2.0 a minute, about 1 min left"

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 import shutil
 
 from grading_records import PLAN, judged, keep
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from robocop_grading.classroom.results import Results, StoredGrade, page
 from robocop_grading.classroom.table import table
+from robocop_grading.files.exports import Person
 
 RESULTS = (
     StoredGrade(
@@ -64,6 +66,25 @@ def test_table_has_one_row_per_hand_in_and_no_spreadsheet_formulas():
     assert columns["bridge"] == ["0.0", "not handed in", "", ""], "without the extra point"
     assert columns["cancel"] == ["failed", "failed", "", ""]
     assert columns["problem"] == ["", "'=cmd", "nothing to grade", "a worker died"]
+
+
+def test_table_has_what_moodle_and_gradescope_import_where_they_say_who_handed_in():
+    people = {"=anna": Person("Participant 7", "Anna Nováková"), "dora": Person("", "Dora", "d@example.edu", "-42")}
+    rows = read(table(RESULTS, PLAN, {"dora": "a worker died"}, people))
+    imported = [[row[key] for key in ("Identifier", "Full name", "Email", "SID", "Grade")] for row in rows]
+    assert imported[0] == ["Participant 7", "Anna Nováková", "", "", "0.5"]
+    assert imported[1:] == [["", "", "", "", "0.0"], [""] * 5, ["", "Dora", "d@example.edu", "'-42", ""]]
+    assert "Grade" not in read(table(RESULTS, PLAN))[0]
+
+
+def test_advice_is_told_apart_from_problems_and_no_text_ends_in_the_middle_of_a_word():
+    advised = StoredGrade("anna", RESULTS[0].checks, ("bridge: robocop_rviz " * 40,), ("line 7: use rospy.Rate",))
+    html = page("class", [advised], PLAN, {}, running=False)
+    (problems,) = re.findall("<span class=failed>(.*?)</span>", html)
+    assert len(problems) <= 304 and problems.endswith(" robocop_rviz ...")
+    assert re.search("class=note><summary>1 note</summary>.*line 7: use rospy.Rate", html)
+    (row,) = read(table([advised], PLAN))
+    assert row["notes"] == "line 7: use rospy.Rate" and "line 7" not in row["problem"]
 
 
 @given(st.text(), st.text())

@@ -15,7 +15,6 @@ from robocop_grading.judge import judge
 from robocop_grading.record import Record
 from robocop_grading.report import write as report
 
-
 MOVING = replace(RIGHT, samples=tuple(replace(sample, v=0.2) for sample in RIGHT.samples))
 STUCK = changed(results=(), problem="the robot made no progress for 8 s, and the goal did not end")
 
