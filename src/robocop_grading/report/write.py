@@ -151,7 +151,8 @@ def _mistake(mistake: Mistake, records: Records, replays: _Replays) -> Dict[str,
         return values
     begin = max(0.0, failure.time - record.samples[0].time - LEAD) if record.samples else 0.0
     picture, replay = _plot(CHECKS[check.name].plot, record, [failure.time]), replays.of(check.part, record, begin)
-    return {**values, "svg": picture, "replay": replay, "problem": record.problem}
+    problem = "" if record.problem.lower() in mistake.sentence.lower() else record.problem
+    return {**values, "svg": picture, "replay": replay, "problem": problem}
 
 
 def _scenarios(grade: Grade, plan: Plan, records: Records, replays: _Replays) -> Iterator[Dict[str, Any]]:
