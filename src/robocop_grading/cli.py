@@ -3,6 +3,7 @@
 import argparse
 import os
 import sys
+import traceback
 import zlib
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from robocop_hosting import tree
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
+from . import faults
 from .errors import GradingError, GradingSetupError, PlanError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
@@ -123,6 +125,12 @@ def _plan(args: argparse.Namespace, share: Path) -> Plan:
     return load(file, args.seed).restricted([name for word in args.only for name in word.split(",") if name])
 
 
+def _kept_traceback(args: argparse.Namespace) -> Path:
+    """The path of a file in the report's folder, to which the traceback of the present exception is written."""
+    folder = Path(args.report or report_folder(places()[0] / "reports", args.path, not args.only))
+    return faults.keep([traceback.format_exc()], make_report_folder(folder))
+
+
 def main() -> None:
     """Exit status 0: every check passed; 1: not every one; 2: an argument, the plan or the machine has to be corrected;
     3: no grade, as the machine had no time; 4: the submission can't be graded; 130: interrupted.
@@ -158,6 +166,7 @@ def main() -> None:
         sys.exit(INTERRUPTED)
     except Exception as error:  # the grader failed on this submission
         print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MAX_SHOWN]}", file=sys.stderr)
+        print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
         sys.exit(NOT_GRADED)
     print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)
     print(as_text(grade, {script.part: script.next_step for script in submission.scripts}))
