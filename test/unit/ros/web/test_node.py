@@ -4,7 +4,7 @@ import pytest
 
 from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.ros.web.node import load_params
-from aro_robocop_goto_as.web_params import WebParams
+from aro_robocop_goto_as.web.params import WebParams
 
 
 def test_arguments_of_ros_and_empty_ones_are_left_out():
