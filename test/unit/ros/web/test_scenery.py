@@ -17,6 +17,7 @@ from aro_robocop_goto_as.ros.web.scenery import (
     MAX_MAP_CELLS,
     OCCUPIED,
     UNKNOWN,
+    SceneryPart,
     map_image,
     part_labels,
     scan_points,
