@@ -5,6 +5,7 @@ import threading
 import time
 from typing import Any, Dict, List, Optional, Sequence
 
+import rosgraph
 import rospy
 import yaml
 
@@ -138,6 +139,12 @@ class WebNode:
                 part.ask_master(self._state.now, self._always)
 
 
+def consequence(arguments: Sequence[str]) -> str:
+    """What follows where the page can't start, as the end of a sentence; of the launch files only a replay needs it."""
+    given = rosgraph.names.load_mappings(arguments)
+    return "; everything else runs on, without the page" if "__log" in given and "replay" not in given else ""
+
+
 def main() -> None:
     """Serve the page until a signal, or the end of the ROS master."""
     answer_help("The web page that shows the running system in a browser.", "[web_port:=N] [web_host:=ADDRESS]")
@@ -145,7 +152,7 @@ def main() -> None:
         p = load_params(sys.argv[1:])
         server = start_server(p)
     except RobocopError as error:
-        sys.exit(f"{WEB}: {error.code}: {error}")
+        sys.exit(f"{WEB}: {error.code}: {error}{consequence(sys.argv)}")
     with node(WEB, disable_rostime=True):  # wall time: the page stays alive while simulated time is paused
         end_with_master()
         print(f"{WEB}: open {access.url(p.web_host, p.web_port)} in a browser", flush=True)
