@@ -12,7 +12,7 @@ from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.goto.params import GotoParams, differences, tuned
 
 P = GotoParams()
-INTERFACES = Path(__file__).resolve().parents[2] / "docs" / "interfaces.md"
+INTERFACES = Path(__file__).resolve().parents[3] / "docs" / "interfaces.md"
 
 
 def test_a_change_replaces_its_values_and_keeps_all_others() -> None:
