@@ -20,7 +20,7 @@ from . import faults
 from .errors import GradingError, GradingSetupError, PlanError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
-from .judge import CheckResult, Grade, Outcome, scored
+from .grades import CheckResult, Grade, Outcome, scored
 from .plan import MIDDLE, Plan
 from .plan_file import load
 from .report.write import make_report_folder
