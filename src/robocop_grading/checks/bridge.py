@@ -3,12 +3,14 @@
 import math
 import re
 from dataclasses import replace
-from typing import List, Mapping, Optional, Sequence
+from typing import Dict, List, Mapping, Optional, Sequence
+
+from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 
 from ..handout import ACTION, CLICKS, Limits
 from ..record import PREEMPTED, Cancel, Click, Goal, Record
 from ..texts import text
-from .bridge_reports import NO_REPORT, UNTRUE, wrong_reports
+from .bridge_reports import NO_REPORT, is_silent, untrue, wrong_reports
 from .consequences import alike
 from .node_lifetime import closest, no_exception, stays_alive
 from .output import UNKNOWN_TYPE, logged
@@ -23,6 +25,14 @@ ACTION_TOPICS = tuple(f"{ACTION}/{topic}" for topic in ("goal", "status", "resul
 MAX_ID = 80  # characters that are shown of a goal's id
 NEEDS = "bridge_alive", "forwards_goal"
 NOT_FORWARDED = "The click was not forwarded"
+WRONG_WAY_ROUND = (
+    "The transform is applied the wrong way round, as from odom to {}: odom is the target frame, the first argument of "
+    "lookup_transform()"
+)
+NOT_TURNED = "The click is only shifted from {} to odom, not turned: use tf2, which does both"
+NOT_SHIFTED = "The click is only turned from {} to odom, not shifted: use tf2, which does both"
+OTHER_FRAME = "The click in {0} is transformed as if it were in {1}: take its frame from header.frame_id"
+OWN_SERVER = "The bridge has an action server robocop_goto_as of its own, so its client never waits for the real one"
 CRASH = After("bridge_alive", when=lambda _record, failure, _earlier: failure.kind in (MISSING, NO_REPORT))
 
 
@@ -39,8 +49,8 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
     """A 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position."""
     if not record.clicks:
         return NotReached("there was no click")
-    click = record.clicks[-1]
-    goals = _goals_after(record, click)
+    click, *later = record.clicks
+    goals = _goals_after(record, click, later[0].time - 1e-3 if later else math.inf)
     wanted = f"x {click.x:g} y {click.y:g}"
     if not goals:
         return Failed(f"a goal at {wanted}", "no goal", click.time, _missing_connection(record), MISSING)
@@ -64,6 +74,8 @@ def _other_position(click: Click, goal: Goal) -> str:
         ("The sign of x is wrong", (-x, y)),
         ("The sign of y is wrong", (x, -y)),
         ("The signs of x and y are wrong", (-x, -y)),
+        ("The position is rounded", (round(x, 1), round(y, 1))),
+        ("The position is rounded to whole numbers", (round(x), round(y))),
     ):
         if _distance(goal, *there) <= POSITION_TOLERANCE:
             return f"{cause}: set goal.position = msg.pose.position"
@@ -175,8 +187,10 @@ def _not_cancelled(requests: Sequence[Cancel], older: Goal) -> str:
 def waits_for_server(record: Record, limits: Limits) -> Verdict:
     """A bridge that is started before the server waits for it, and then works."""
     if record.name == "no_server":
+        if record.marks.get("own_server"):
+            return Failed("an action client only", "an action server, too", 0.0, OWN_SERVER)
         return _crash(record, limits) or NotReached("the bridge was not tried with a server")
-    if record.clicks and _goals_after(record, record.clicks[-1]):
+    if record.clicks and _goals_after(record, record.clicks[0]):
         return PASSED
     if not _has_client(record):
         return NotReached(_unconnected(record))
@@ -224,12 +238,37 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
             return Failed(f"a goal for the click in {click.frame}", "no goal", click.time, cause, MISSING)
         goal = goals[-1]
         if not _distance(goal, click.odom_x, click.odom_y) <= FRAME_TOLERANCE:
-            cause = "The transform is wrong"
-            if _distance(goal, click.x, click.y) < POSITION_TOLERANCE:
-                cause = text("not_transformed", click.frame)
+            cause = _wrong_transform(record, click, goal)
             wanted = f"x {click.odom_x:.2f} y {click.odom_y:.2f} in odom"
             return Failed(wanted, f"x {goal.x:.2f} y {goal.y:.2f}", goal.time, cause, POSITION)
     return PASSED
+
+
+def _wrong_transform(record: Record, click: Click, goal: Goal) -> str:
+    """Which mistake explains where a click in another frame than odom has become a goal."""
+    if _distance(goal, click.x, click.y) < POSITION_TOLERANCE:
+        return text("not_transformed", click.frame)
+    frames = _frames(record, click.time)
+    there = frames.pop(click.frame, Pose2D())
+    for cause, odom_from_frame in (
+        (WRONG_WAY_ROUND.format(click.frame), inverse(there)),
+        (NOT_TURNED.format(click.frame), there._replace(yaw=0.0)),
+        (NOT_SHIFTED.format(click.frame), Pose2D(yaw=there.yaw)),
+        *((OTHER_FRAME.format(click.frame, other), pose) for other, pose in frames.items()),
+    ):
+        point = compose(odom_from_frame, Pose2D(click.x, click.y))
+        if _distance(goal, point.x, point.y) <= FRAME_TOLERANCE:
+            return cause
+    return "The transform is wrong"
+
+
+def _frames(record: Record, time: float) -> Dict[str, Pose2D]:
+    """By frame, odom_from_frame at a time [s]; map is the world."""
+    now = max((it for it in record.samples if it.time <= time + 1e-6), key=lambda it: it.time, default=None)
+    if now is None:
+        return {}
+    robot, in_world = Pose2D(now.x, now.y, now.yaw), Pose2D(now.world_x, now.world_y, now.world_yaw)
+    return {"base_footprint": robot, "map": compose(robot, inverse(in_world))}
 
 
 def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
@@ -237,10 +276,9 @@ def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
     record, found = records.get("pending"), []
     if record is None or any(_crash(it, limits) for it in records.values()):
         return []
-    if "click" in records and reports_status(records["click"], limits) is PASSED:
-        verdict = reports_status(record, limits)
-        if isinstance(verdict, Failed) and verdict.kind in (NO_REPORT, UNTRUE):
-            found.append(text("reports_stop") if verdict.kind == NO_REPORT else verdict.cause)
+    if "click" in records and reports_status(records["click"], limits) is PASSED and "watching" in record.marks:
+        wrong = untrue(record)
+        found += [text("reports_stop")] if is_silent(record) else [wrong.cause] if wrong else []
     if "replace" in records and cancels_older(records["replace"], limits) is PASSED:
         verdict = cancels_older(record, limits)
         if isinstance(verdict, Failed) and verdict.kind == NOT_CANCELLED:
