@@ -13,7 +13,7 @@ from .verdict import Failed
 
 NO_REPORT, EMPTY, UNTRUE = "no report", "empty report", "untrue report"  # kinds of failures
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
-STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b", re.IGNORECASE)
+STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b")
 NUMBER = re.compile(r"\b(?:state|status|stav)\b\D{0,5}\b([0-9])\b|^published on \S+: ([0-9])$", re.IGNORECASE)
 PENDING_AS_TOLD = "_has_header"  # actionlib's GoalStatus.to_string(0): the message class has this constant, too: False
 # How a recorded line begins: as rospy writes it to a terminal, as recorded from /rosout, or a published report.
@@ -26,17 +26,16 @@ SETTLED = 0.3  # [s] after a change, in which a report may still be of the state
 SHORTEST = 1.0  # [s] a state that lasts less than this is not compared with reports
 RUNNING = (PENDING, ACTIVE)
 EARLIER_GOAL = (
-    "The bridge reports {}, which is the state of an earlier goal, while the newest goal is {}: report what get_state() "
-    "returns. Is it the first entry of status_list that is reported, which is of the oldest goal, or does a timer of the "
-    "earlier goal go on?"
+    "The bridge reports {}, the state of an earlier goal, while the newest goal is {}: report what get_state() "
+    "returns. Is it the first entry of status_list, the oldest goal's, or does a timer of the earlier goal go on?"
 )
 SEVERAL_STATES = (
     "A report that names several states says nothing if it names the same ones whatever the true one is: report the "
     "state that get_state() returns, and no other one"
 )
 REPORTS_END = (
-    "Nothing is reported while this goal is active, although the state of earlier goals was: does the timer end with an "
-    "earlier goal, for example by an exception for a state that it does not expect?"
+    "Nothing is reported while this goal is active, although reports came for earlier goals: does the timer end "
+    "with an earlier goal, for example by an exception for a state that it does not expect?"
 )
 
 
@@ -88,9 +87,9 @@ def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
 
 
 class Report(NamedTuple):
-    """A line that names states: when [s], the names and labelled numbers in their order, the states, all its words.
+    """A line that names states: when [s], their names, or numbers if it has no names, the states, all its words.
 
-    Each word comes with how often it is in the line: a number beside a list of all numbers has its place there, too.
+    Each word comes with how often it is in the line, because a state's number may also be in a list of all numbers.
     """
 
     time: float
@@ -100,8 +99,8 @@ class Report(NamedTuple):
 
     @property
     def is_by_name(self) -> bool:
-        """Return whether it has a name of a state; its numbers count only if it has none."""
-        return not all(map(str.isdigit, self.named))
+        """Return whether it has names of states."""
+        return not self.named[0].isdigit()
 
 
 class Stretch(NamedTuple):
@@ -125,10 +124,10 @@ class Stretch(NamedTuple):
 
 def _report(line: Line) -> Report:
     text_ = line.text.replace(PENDING_AS_TOLD, STATUS_NAMES[PENDING])
-    names, numbers = STATES.findall(text_), [one or other for one, other in NUMBER.findall(text_)]
-    states = {STATUS_NAMES.index(name.upper()) for name in names} or set(map(int, numbers))
+    named = STATES.findall(text_.upper()) or [one or other for one, other in NUMBER.findall(text_)]
+    states = {int(it) if it.isdigit() else STATUS_NAMES.index(it) for it in named}
     words = Counter(WORD.findall(_content(line).lower()))
-    return Report(line.time, (*map(str.upper, names), *numbers), states, frozenset(words.items()))
+    return Report(line.time, tuple(named), states, frozenset(words.items()))
 
 
 def _stretches(record: Record) -> List[Stretch]:
@@ -154,9 +153,7 @@ def _follow_the_truth(stretches: Sequence[Stretch]) -> bool:
     ended = [it.often() for it in stretches if it.reports and it.true not in RUNNING]
     if not running or not ended:
         return False
-    return bool(
-        set.intersection(*running) - set.union(*ended) or set.intersection(*ended) - set.union(*running)
-    )
+    return bool(set.intersection(*running) - set.union(*ended) or set.intersection(*ended) - set.union(*running))
 
 
 def _state_names(states: Set[int]) -> str:
@@ -170,13 +167,11 @@ def untrue(record: Record) -> Optional[Failed]:
     it is the names that change otherwise.
     """
     stretches = _stretches(record)
-    told = {(it.named, stretch.true) for stretch in stretches for it in stretch.reports if len(it.states) > 1}
-    count = Counter(named for named, _ in told)
-    others = [it._replace(reports=[one for one in it.reports if count[one.named] < 2]) for it in stretches]
-    if any(it.reports for it in others):
-        stretches, cause = others, ""  # those that list all states are a legend
-    else:
-        cause = SEVERAL_STATES
+    named = [{one.named for one in it.reports if len(one.states) > 1} for it in stretches if it.reports]
+    legend = set.intersection(*named) if len(named) > 1 else set()
+    others = [it._replace(reports=[one for one in it.reports if one.named not in legend]) for it in stretches]
+    cause = "" if any(it.reports for it in others) or not legend else SEVERAL_STATES
+    stretches = stretches if cause else others
     wrong = [it for it in stretches if len(it.reports) > 1 and (cause or 2 * len(it.untrue()) > len(it.reports))]
     names = {report.named for it in stretches for report in it.reports if report.is_by_name}
     if not wrong or len(names) < 2 and _follow_the_truth(stretches):

@@ -7,6 +7,7 @@ from typing import Callable, Iterable, List, Tuple
 import pytest
 from grading_records import LIMITS
 
+from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from robocop_grading import record as rec
 from robocop_grading.checks import CHECKS, PASSED, Failed
 from robocop_grading.checks.bridge import about_pending
@@ -136,6 +137,7 @@ LEGEND = "(0 PENDING, 1 ACTIVE, 2 PREEMPTED, 3 SUCCEEDED)"
         lambda time: [f"state: {1 if _states(time)[-1] == rec.ACTIVE else 2}"],  # of actionlib's SimpleGoalState
         lambda time: [f"stav: {CZECH[_states(time)[-1]]}, {time:.1f} s"],
         lambda time: [f"Stav akce: {_states(time)[-1]} {LEGEND}, {time:.1f} s"],
+        lambda time: [f"State: {_states(time)[-1]} {LEGEND}"],
         lambda time: [LEGEND, f"stav: {_states(time)[-1]}"],
         lambda time: [f"state: {_states(time)[-1]}", f"previous: {_named(_states(time - 1.0)[-1:])}"],
         lambda time: ["still active"] if _states(time)[-1] == rec.ACTIVE else [],
@@ -162,8 +164,8 @@ def test_reports_that_are_late_by_one_pass(period: float) -> None:
         (lambda time: _named([_by_the_clock(time)]), "reports ACTIVE while the goal is ABORTED"),
         (lambda time: [f"state: {_by_the_clock(time)}"], "reports ACTIVE while the goal is ABORTED"),
         (lambda time: [f"Stav akce: {_by_the_clock(time)} {LEGEND}"], "names the same ones whatever the true one is"),
-        (lambda time: _named(_states(time)), "SUCCEEDED, which is the state of an earlier goal"),
-        (lambda time: _named(_states(time, KEPT)[:1]), "PREEMPTED, which is the state of an earlier goal, while the"),
+        (lambda time: _named(_states(time)), "SUCCEEDED, the state of an earlier goal"),
+        (lambda time: _named(_states(time, KEPT)[:1]), "PREEMPTED, the state of an earlier goal, while the"),
         (lambda time: _named([min(_states(time)[-1], 3)]), "reports SUCCEEDED while the goal is ABORTED"),
         (lambda time: _named(_states(time)[-1:]) if time < 44.0 else [], "Nothing is reported while this goal is"),
     ],
@@ -188,12 +190,70 @@ def test_too_few_reports_while_the_goal_is_active_fail(times: Tuple[float, ...],
         (1.2, 0.4, "sign of y"),
         (0.0, 0.0, "as if it were not set"),
         (1.2, 0.0, "y is not set"),
+        (1.0, 0.0, "rounded to whole numbers"),
         (5.0, 5.0, "does not have the message's position"),
     ],
 )
 def test_cause_of_a_goal_elsewhere_than_the_click_is_named(x: float, y: float, words: str) -> None:
     verdict = CHECKS["forwards_goal"](_clicked(x, y), LIMITS)
     assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+def test_goal_whose_click_is_rounded_to_a_tenth_of_a_metre_fails() -> None:
+    record = replace(_clicked(1.2, -0.4), clicks=(rec.Click(0.0, "odom", 1.24, -0.43, 1.24, -0.43),))
+    verdict = CHECKS["forwards_goal"](record, LIMITS)
+    assert isinstance(verdict, Failed) and verdict.cause.startswith("The position is rounded:")
+
+
+@pytest.mark.parametrize("own_server", [0.0, 1.0])
+def test_bridge_with_an_action_server_of_its_own_does_not_wait_for_the_real_one(own_server: float) -> None:
+    verdict = CHECKS["waits_for_server"](Record("no_server", "bridge", marks={"own_server": own_server}), LIMITS)
+    assert isinstance(verdict, Failed) == bool(own_server)
+    assert not own_server or "has an action server robocop_goto_as of its own" in verdict.cause
+
+
+ROBOT, IN_WORLD = Pose2D(0.6, 0.3, 1.0), Pose2D(40.4, -14.3, 1.7)  # from odom and from the world
+
+
+def _in_frame(frame: str, goal: Pose2D) -> Record:
+    """A click at (1.0, 0.2) in a frame becomes a goal."""
+    odom_from_frame = ROBOT if frame == "base_footprint" else compose(ROBOT, inverse(IN_WORLD))
+    there = compose(odom_from_frame, Pose2D(1.0, 0.2))
+    return Record(
+        "frame",
+        "bridge",
+        samples=(rec.Sample(0.9, *ROBOT, *IN_WORLD, 0.0, 0.0, 9.0, False),),
+        clicks=(rec.Click(1.0, frame, 1.0, 0.2, there.x, there.y),),
+        goals=(rec.Goal("g", goal.x, goal.y, 1.0, ""),),
+    )
+
+
+MAP = compose(ROBOT, inverse(IN_WORLD))  # odom_from_map
+
+
+@pytest.mark.parametrize(
+    "frame, odom_from_frame, words",
+    [
+        ("base_footprint", Pose2D(), "base_footprint were passed on as if they were in odom"),
+        ("base_footprint", MAP, "in base_footprint is transformed as if it were in map"),
+        ("map", ROBOT, "in map is transformed as if it were in base_footprint"),
+        ("base_footprint", inverse(ROBOT), "the wrong way round, as from odom to base_footprint"),
+        ("map", inverse(MAP), "the wrong way round, as from odom to map"),
+        ("base_footprint", ROBOT._replace(yaw=0.0), "only shifted from base_footprint to odom, not turned"),
+        ("base_footprint", Pose2D(yaw=ROBOT.yaw), "only turned from base_footprint to odom, not shifted"),
+        ("base_footprint", Pose2D(5.0), "The transform is wrong"),
+    ],
+)
+def test_cause_of_a_wrong_transform_is_named(frame: str, odom_from_frame: Pose2D, words: str) -> None:
+    goal = compose(odom_from_frame, Pose2D(1.0, 0.2))
+    verdict = CHECKS["goal_frame"](_in_frame(frame, goal), LIMITS)
+    assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+@pytest.mark.parametrize("frame, odom_from_frame", [("base_footprint", ROBOT), ("map", MAP)])
+def test_goal_in_odom_passes(frame: str, odom_from_frame: Pose2D) -> None:
+    goal = compose(odom_from_frame, Pose2D(1.0, 0.2))
+    assert CHECKS["goal_frame"](_in_frame(frame, goal), LIMITS) is PASSED
 
 
 def test_misspelt_name_of_an_action_client_is_quoted() -> None:
