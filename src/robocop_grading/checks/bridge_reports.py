@@ -8,7 +8,6 @@ from typing import FrozenSet, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from ..handout import Limits
 from ..record import ACTIVE, LOST, PENDING, STATUS_NAMES, Line, Record
-from ..texts import text
 from .verdict import Failed
 
 NO_REPORT, EMPTY, UNTRUE = "no report", "empty report", "untrue report"  # kinds of failures
@@ -25,13 +24,27 @@ WORD = re.compile(r"[^\W\d_]+|\d+")
 SETTLED = 0.3  # [s] after a change, in which a report may still be of the state before
 SHORTEST = 1.0  # [s] a state that lasts less than this is not compared with reports
 RUNNING = (PENDING, ACTIVE)
-EARLIER_GOAL = (
-    "The bridge reports {}, the state of an earlier goal, while the newest goal is {}: report what get_state() "
-    "returns. Is it the first entry of status_list, the oldest goal's, or does a timer of the earlier goal go on?"
+REPORT = "report what get_state() returns"
+SAYS_NOTHING = "The reports say nothing about the state"
+UNCALLED_REPORT = (
+    "The report shows a function instead of the state: the parentheses of its call are missing, as in get_state()"
+)
+REPORTED_ONCE = (
+    "The status is not reported repeatedly while a goal is active: is the rospy.Timer's period too long, does anything "
+    "end it, or does it only report changes?"
+)
+NOTHING_REPORTED = (
+    "Nothing is logged, printed or published about the state while a goal is active: a rospy.Timer has to report it "
+    "repeatedly, also when it has not changed"
 )
 SEVERAL_STATES = (
     "A report that names several states says nothing if it names the same ones whatever the true one is: report the "
     "state that get_state() returns, and no other one"
+)
+NUMBERS = "GoalStatus has PENDING = 0, ACTIVE = 1, PREEMPTED = 2, SUCCEEDED = 3, ABORTED = 4"
+EARLIER_GOAL = (
+    "The bridge reports {}, the state of an earlier goal, while the newest goal is {}: report what get_state() "
+    "returns. Is it the first entry of status_list, the oldest goal's, or does a timer of the earlier goal go on?"
 )
 REPORTS_END = (
     "Nothing is reported while this goal is active, although reports came for earlier goals: does the timer end "
@@ -80,9 +93,9 @@ def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
     if len(_began(lines)) >= limits.status_reports:
         empty = next(line for line in lines if _says_nothing(line))
         uncalled = UNCALLED.search(_content(empty))
-        cause = text("uncalled_report") if uncalled else text("empty_report", _content(empty))
+        cause = UNCALLED_REPORT if uncalled else f'{SAYS_NOTHING}, as in "{_content(empty)}": {REPORT}'
         return Failed(wanted, f"{count}", empty.time, cause, EMPTY)
-    cause = text("reported_once" if count else "nothing_reported")
+    cause = REPORTED_ONCE if count else NOTHING_REPORTED
     return Failed(wanted, f"{count}", start, cause, NO_REPORT)
 
 
@@ -123,8 +136,8 @@ class Stretch(NamedTuple):
 
 
 def _report(line: Line) -> Report:
-    text_ = line.text.replace(PENDING_AS_TOLD, STATUS_NAMES[PENDING])
-    named = STATES.findall(text_.upper()) or [one or other for one, other in NUMBER.findall(text_)]
+    text = line.text.replace(PENDING_AS_TOLD, STATUS_NAMES[PENDING])
+    named = STATES.findall(text.upper()) or [one or other for one, other in NUMBER.findall(text)]
     states = {int(it) if it.isdigit() else STATUS_NAMES.index(it) for it in named}
     words = Counter(WORD.findall(_content(line).lower()))
     return Report(line.time, tuple(named), states, frozenset(words.items()))
@@ -187,12 +200,12 @@ def _untrue_cause(record: Record, stretches: Sequence[Stretch], wrong: Stretch) 
     first, true = wrong.untrue()[0], STATUS_NAMES[wrong.true]
     shifts = {state - it.true for it in stretches for report in it.reports for state in report.states}
     if len(shifts) == 1 and len({it.true for it in stretches if it.reports}) > 1:
-        return text("shifted_states", _state_names(first.states), true)
+        return f"The names of the states are shifted: {_state_names(first.states)} is reported for {true}; {NUMBERS}"
     newest = max((goal.time for goal in record.goals if goal.time <= wrong.start), default=0.0)
     earlier = {it.id: it.status for it in record.statuses if it.time <= newest and it.status not in RUNNING}
-    if wrong.true in RUNNING and first.states <= set(earlier.values()):
+    if wrong.true in RUNNING and earlier and first.states <= {LOST, *earlier.values()}:
         return EARLIER_GOAL.format(_state_names(first.states), true)
-    return text("untrue_state", _state_names(first.states), true)
+    return f"The bridge reports {_state_names(first.states)} while the goal is {true}: {REPORT}"
 
 
 def _ended(record: Record, began: List[float]) -> Optional[Failed]:
