@@ -166,7 +166,7 @@ def _follow_the_truth(stretches: Sequence[Stretch]) -> bool:
     ended = [it.often() for it in stretches if it.reports and it.true not in RUNNING]
     if not running or not ended:
         return False
-    return bool(set.intersection(*running) - set.union(*ended) or set.intersection(*ended) - set.union(*running))
+    return bool(set.intersection(*running).difference(*ended) or set.intersection(*ended).difference(*running))
 
 
 def _state_names(states: Set[int]) -> str:
