@@ -660,6 +660,6 @@ ADVISED: Tuple[Wrong, ...] = (
         "bridge_pending_is_active",
         "reports_status",
         "reports ACTIVE while the goal is PENDING",
-        (STATE, "'ACTIVE' if self.client.get_state() < 2 else 'SUCCEEDED'"),
+        (STATE, "GoalStatus.to_string(max(GoalStatus.ACTIVE, self.client.get_state()))"),
     ),
 )

@@ -10,7 +10,7 @@ from ..handout import ACTION, CLICKS
 from ..record import Cancel, Click, Goal, Record
 from .node_lifetime import closest
 from .output import NOT_IMPORTED, UNKNOWN_TYPE, logged
-from .topic_types import wrong_type
+from .topic_use import wrong_type
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages

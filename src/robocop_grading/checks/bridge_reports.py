@@ -8,9 +8,8 @@ from typing import FrozenSet, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from ..handout import Limits
 from ..record import ACTIVE, LOST, PENDING, STATUS_NAMES, Line, Record
-from .verdict import Failed
+from .verdict import Failed, Kind
 
-NO_REPORT, EMPTY, UNTRUE = "no report", "empty report", "untrue report"  # kinds of failures
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
 STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b")
 NUMBER = re.compile(r"\b(?:state|status|stav)\b\D{0,5}\b([0-9])\b|^published on \S+: ([0-9])$", re.IGNORECASE)
@@ -94,9 +93,9 @@ def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
         empty = next(line for line in lines if _says_nothing(line))
         uncalled = UNCALLED.search(_content(empty))
         cause = UNCALLED_REPORT if uncalled else f'{SAYS_NOTHING}, as in "{_content(empty)}": {REPORT}'
-        return Failed(wanted, f"{count}", empty.time, cause, EMPTY)
+        return Failed(wanted, f"{count}", empty.time, cause, Kind.EMPTY_REPORT)
     cause = REPORTED_ONCE if count else NOTHING_REPORTED
-    return Failed(wanted, f"{count}", start, cause, NO_REPORT)
+    return Failed(wanted, f"{count}", start, cause, Kind.NO_REPORT)
 
 
 class Report(NamedTuple):
@@ -192,7 +191,7 @@ def untrue(record: Record) -> Optional[Failed]:
     first = wrong[0].reports[0] if cause else wrong[0].untrue()[0]
     seen = ", ".join(dict.fromkeys(_state_names(report.states) for report in wrong[0].reports))
     cause = cause or _untrue_cause(record, stretches, wrong[0])
-    return Failed(STATUS_NAMES[wrong[0].true], seen, first.time, cause, UNTRUE)
+    return Failed(STATUS_NAMES[wrong[0].true], seen, first.time, cause, Kind.UNTRUE_REPORT)
 
 
 def _untrue_cause(record: Record, stretches: Sequence[Stretch], wrong: Stretch) -> str:
@@ -214,5 +213,5 @@ def _ended(record: Record, began: List[float]) -> Optional[Failed]:
     for it in _stretches(record):
         watched = it.true == ACTIVE and 2.0 * period + SETTLED < it.end - it.start < math.inf
         if watched and not _between(record, it.start + SETTLED, it.end):
-            return Failed("reports of each goal", "none", it.start, REPORTS_END, NO_REPORT)
+            return Failed("reports of each goal", "none", it.start, REPORTS_END, Kind.NO_REPORT)
     return None

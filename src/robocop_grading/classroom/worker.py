@@ -1,14 +1,16 @@
 """Grades one hand-in of a class and stores its report; run by dask's workers."""
 
 import time
+import traceback
 from dataclasses import replace
 from pathlib import Path
-from typing import List
+from typing import List, Tuple
 
 from aro_robocop_goto_as.errors import RobocopError
 from robocop_hosting.tree import temporary_folder
 from robocop_hosting.workspace import places
 
+from .. import faults
 from ..errors import UngradableError
 from ..grader import grade
 from ..judge import Grade
@@ -17,6 +19,7 @@ from ..report.write import write
 from ..runner import Runner
 from ..sandbox.bubblewrap import open_sandbox
 from ..submission import prepare_submission
+from ..texts import shortened
 from .hand_ins import unpacked
 from .results import Results
 
@@ -37,14 +40,17 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
             handed_in.write(top / "hand_in" / path.name)
             submission = prepare_submission(str(top / "hand_in" / path.name), share, state, top / "workshop", sandbox)
             submission = replace(submission, name=shown(path), notes=[*submission.notes, *notes])
-            grade(Runner(plan, state, sandbox), submission, report)
+            grade(Runner(plan, state, sandbox), submission, report, results.folder / path.name)
         except UngradableError:
             raise
         except Exception as error:  # a hand-in that breaks the grader affects only its own row
             report.mkdir(exist_ok=True)
-            problem = str(error) if isinstance(error, RobocopError) else f"could not be graded: {error!r}"
-            problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MAX_PROBLEM]
-            write(Grade(shown(path), (), (problem, *notes)), plan, {}, report)
+            problem = str(error)
+            tracebacks: Tuple[str, ...] = ()
+            if not isinstance(error, RobocopError):
+                problem, tracebacks = f"could not be graded, see {faults.FILE}: {error!r}", (traceback.format_exc(),)
+            problem = shortened(problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", ""), MAX_PROBLEM)
+            write(Grade(shown(path), (), (problem,), tuple(notes), tracebacks=tracebacks), plan, {}, report)
         results.keep(path.name, digest, report, time.monotonic() - started)
 
 
