@@ -1,19 +1,21 @@
 """One node's run through the scenarios of its part: the ticks, and a record of everything that the node sends."""
 
 from collections import defaultdict
-from typing import Any, Callable, DefaultDict, Dict, List, Set
+from typing import Any, Callable, DefaultDict, Dict, List, Sequence, Set
 
 from actionlib_msgs.msg import GoalStatusArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionResult
 from geometry_msgs.msg import Twist
 from rosgraph_msgs.msg import Log
 
-from aro_robocop_goto_as.geometry import STANDSTILL
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D
 from aro_robocop_goto_as.ros import convert
 
 from .. import record as rec
 from ..handout import ACTION
+from ..plan import Block
 from ..record import Record
+from ..sites import ORIGIN
 from .job import Job, tell
 from .node import Node, Spent
 from .services import Services
@@ -49,14 +51,14 @@ class Run:
         """Tell the grader which scenario is the next one."""
         tell(f"begin {name}")
 
-    def begin(self, name: str, index: int, odd_scan: bool = False) -> None:
-        """Start a scenario's record and bag, with the robot at the start of the site of this index."""
+    def begin(self, name: str, site: Pose2D = ORIGIN, blocks: Sequence[Block] = (), odd_scan: bool = False) -> None:
+        """Start a scenario's record and bag, with the robot at rest at its site."""
         self.parts = defaultdict(list)
         self._before.clear()
         self.marks = {}
         self.stage.bag.open(self.job.out / f"{self.job.part}-{name}.bag")
         self.stage.command(STANDSTILL)
-        self.stage.begin(index, odd_scan)
+        self.stage.begin(site, blocks, odd_scan)
 
     def finish(self, name: str, **more: Any) -> Record:
         """Write the scenario's record, and return it."""
