@@ -8,13 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
-from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
+from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
 from robocop_hosting import tree
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
+from .errors import GradingError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
 from .judge import CheckResult, Grade, Outcome, total

@@ -6,11 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Mapping
 
-from aro_robocop_goto_as.errors import UngradableError
 from aro_robocop_goto_as.suggestions import did_you_mean
 from robocop_hosting.tree import remove, temporary_folder
 
 from . import judge
+from .errors import UngradableError
 from .judge import Grade
 from .record import Record
 from .report import write as report

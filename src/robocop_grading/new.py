@@ -9,9 +9,11 @@ import zipfile
 from pathlib import Path
 from typing import Optional
 
-from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
+from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.process.start import typed
 from robocop_hosting.workspace import places
+
+from .errors import GradingSetupError
 
 SKELETON = Path(__file__).resolve().parent / "skeleton"
 SUFFIX = ".in"  # hides the files from rosrun and roslaunch, which search this whole package

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import List, Optional, Tuple
 
-from aro_robocop_goto_as.errors import UngradableError
 from aro_robocop_goto_as.param_loading import several
 from robocop_hosting.tree import remove
 from robocop_hosting.workspace import exclusive
+
+from .errors import UngradableError
 
 # With a version, as pip takes it, and not an option of pip or dpkg.
 NAME = re.compile(r"[A-Za-z0-9][\w.+\-]*(\[[\w,]+\])?([=<>!~]=[\w.*+]+)?", re.ASCII)

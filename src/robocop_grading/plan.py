@@ -5,12 +5,12 @@ from dataclasses import MISSING, dataclass, replace
 from pathlib import Path
 from typing import Any, List, Sequence, Tuple
 
-from aro_robocop_goto_as.errors import PlanError
 from aro_robocop_goto_as.geometry import Pose2D, compose
 from aro_robocop_goto_as.param_loading import parameter, several
 from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry
 
 from .checks import CHECKS
+from .errors import PlanError
 from .handout import Limits
 from .packages import Packages
 

@@ -8,11 +8,12 @@ from typing import Any, List, Mapping, Optional, Sequence, Type, TypeVar
 
 import yaml
 
-from aro_robocop_goto_as.errors import HostingError, PlanError
 from aro_robocop_goto_as.param_loading import declared, from_dict, parameter
+from robocop_hosting.errors import HostingError
 from robocop_hosting.tree import read_bytes
 
 from .checks import CHECKS
+from .errors import PlanError
 from .handout import Limits
 from .packages import Packages
 from .plan import AGAIN, BRIDGE_SCENARIOS, MIDDLE, START, Block, CheckPlan, Plan, Push, Scenario, Step

@@ -10,12 +10,12 @@ from pathlib import Path
 from subprocess import PIPE
 from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
-from aro_robocop_goto_as.errors import NoTimeError, UngradableError
 from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.process.ports import free_port
 
 from . import record as rec
 from .attempts import counting
+from .errors import NoTimeError, UngradableError
 from .packages import provide
 from .plan import AGAIN, Plan
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterator, List, Mapping, Optional, Sequence
 
-from aro_robocop_goto_as.errors import GradingError, RobocopError
+from aro_robocop_goto_as.errors import RobocopError
 from robocop_hosting import workspace
 from robocop_hosting.launch_file import READER
 from robocop_hosting.package import MAX_NAMED, Package, Started, find_package, started
@@ -29,6 +29,7 @@ from robocop_hosting.tree import read_text
 from robocop_hosting.workspace import Environment, compat_environment, places, workspace_name
 
 from .advice import advice, next_todo
+from .errors import GradingError
 from .new import SKELETON, make
 from .sandbox.bubblewrap import Sandbox, expect_private
 from .sandbox.build import build, runner_in

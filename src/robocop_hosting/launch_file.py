@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Sequence
 
-from aro_robocop_goto_as.errors import HostingError
-
+from .errors import HostingError
 from .tree import read_bytes
 from .workspace import Environment, Run, output_of
 

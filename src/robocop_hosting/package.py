@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
-from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.names import PACKAGE
 
 from . import tree
+from .errors import HostingError
 from .launch_file import LaunchNode, read
 from .scripts import ASIDE, PARTS, Choice, best_place, choose, files_below
 from .tree import read_bytes, read_xml

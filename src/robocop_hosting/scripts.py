@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Collection, Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
-from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.names import BRIDGE, SERVER
 
 from . import tree
+from .errors import HostingError
 from .launch_file import LaunchNode
 from .tree import read_bytes
 

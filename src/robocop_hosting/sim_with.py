@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple
 from xml.sax.saxutils import quoteattr
 
-from aro_robocop_goto_as.errors import HostingError, RobocopError
+from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 from aro_robocop_goto_as.process.start import typed
 
+from .errors import HostingError
 from .package import Package, Started, arguments_of, find_package, names_gazebo, started
 from .scratch import scratch_folder
 from .scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, obstacles

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Collection, Iterator, List, Optional, Tuple
 from xml.etree import ElementTree
 
-from aro_robocop_goto_as.errors import HostingError
+from .errors import HostingError
 
 MAX_SIZE = 1024**2  # bytes of a manifest, launch file or script
 GENERATED = ("build", "devel", "install", "logs", "__pycache__", "__MACOSX")  # folders that nobody has written

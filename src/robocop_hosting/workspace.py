@@ -11,10 +11,11 @@ import zlib
 from pathlib import Path
 from typing import IO, Callable, Dict, Iterator, Mapping, Sequence, Tuple
 
-from aro_robocop_goto_as.errors import HostingError, InstallationError
+from aro_robocop_goto_as.errors import InstallationError
 from aro_robocop_goto_as.process import child
 
 from . import tree
+from .errors import HostingError
 
 Environment = Dict[str, str]
 Run = Callable[[Sequence[str], Environment, "IO[bytes]", "IO[bytes]"], int]  # ..., output, errors -> exit status

@@ -12,8 +12,9 @@ import pytest
 from graded import PLAN, SHARE, STATE, recorded, sandbox
 from right_solutions import RIGHT
 
-from aro_robocop_goto_as.errors import GradingError, RobocopError, UngradableError
+from aro_robocop_goto_as.errors import RobocopError
 from robocop_grading import new
+from robocop_grading.errors import GradingError, UngradableError
 from robocop_grading.sandbox import build
 from robocop_grading.submission import prepare_submission
 

@@ -15,8 +15,8 @@ from processes import busy_processes, processes_mentioning
 from right_solutions import HERE, RIGHT
 from wrong_solutions import ADVISED, WRONG
 
-from aro_robocop_goto_as.errors import GradingError
 from robocop_grading.cli import INTERRUPTED
+from robocop_grading.errors import GradingError
 from robocop_grading.judge import Outcome
 from robocop_grading.plan_file import load
 from robocop_grading.sandbox import bubblewrap as sandbox

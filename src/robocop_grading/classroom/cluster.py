@@ -13,7 +13,7 @@ import dask
 from distributed import Client, Future, LocalCluster, as_completed
 from distributed.security import Security
 
-from aro_robocop_goto_as.errors import GradingSetupError, UngradableError
+from ..errors import GradingSetupError, UngradableError
 
 MAX_SHOWN = 500  # characters of an error
 # Python before 3.11.5 may hang for ever in sys._current_frames(), which dask's profiler calls a hundred times a second,

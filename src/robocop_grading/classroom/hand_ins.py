@@ -4,8 +4,9 @@ import contextlib
 from pathlib import Path
 from typing import Dict, List, Tuple
 
-from aro_robocop_goto_as.errors import GradingSetupError, RobocopError, SubmissionError
+from aro_robocop_goto_as.errors import RobocopError
 
+from ..errors import GradingSetupError, SubmissionError
 from ..files import unpacking
 from ..files.archives import is_archive
 

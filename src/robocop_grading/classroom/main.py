@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Callable, Collection, Dict, List, Mapping, Optional, Sequence, Set
 from xml.etree import ElementTree
 
-from aro_robocop_goto_as.errors import GradingSetupError, RobocopError
+from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
@@ -21,6 +21,7 @@ from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
 from ..cli import INTERRUPTED
+from ..errors import GradingSetupError
 from ..judge import points_in_words
 from ..plan import MIDDLE, Plan
 from ..plan_file import MAX_SEED, load

@@ -5,10 +5,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import List
 
-from aro_robocop_goto_as.errors import RobocopError, UngradableError
+from aro_robocop_goto_as.errors import RobocopError
 from robocop_hosting.tree import temporary_folder
 from robocop_hosting.workspace import places
 
+from ..errors import UngradableError
 from ..grader import grade
 from ..judge import Grade
 from ..plan import Plan

@@ -15,8 +15,9 @@ import zipfile
 from pathlib import PurePosixPath
 from typing import IO, Any, Callable, Dict, NamedTuple
 
-from aro_robocop_goto_as.errors import SubmissionError
 from robocop_hosting import tree
+
+from ..errors import SubmissionError
 
 MAX_BYTES = 64 * 1024**2  # of a hand-in
 MAX_ENTRIES = 5_000  # files, folders and links of a hand-in

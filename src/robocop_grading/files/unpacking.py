@@ -8,9 +8,9 @@ import stat
 from pathlib import Path, PurePosixPath
 from typing import Dict, List, NamedTuple
 
-from aro_robocop_goto_as.errors import SubmissionError
 from robocop_hosting import tree
 
+from ..errors import SubmissionError
 from .archives import FOLDER, LEFT_OUT, Contents, Entry, is_archive, is_left_out, unpack_archive
 
 MAX_NESTED = 3  # archives, one inside another, in what was handed in

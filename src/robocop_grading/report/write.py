@@ -11,9 +11,8 @@ from urllib.parse import quote
 
 import jinja2
 
-from aro_robocop_goto_as.errors import GradingSetupError
-
 from ..checks import CHECKS
+from ..errors import GradingSetupError
 from ..judge import CheckResult, Grade, Outcome, Records, total
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record

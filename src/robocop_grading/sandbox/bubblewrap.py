@@ -16,8 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from aro_robocop_goto_as.errors import GradingError, NoTimeError
-
+from ..errors import GradingError, NoTimeError
 from . import limits
 
 FIRST_USER = 200_000  # uid and gid, above those in use; root would be exempt from process limits

@@ -6,13 +6,14 @@ import subprocess
 from pathlib import Path
 from typing import IO, Iterable, Iterator, Mapping, Optional, Sequence
 
-from aro_robocop_goto_as.errors import GradingError, HostingError
 from aro_robocop_goto_as.process import child
 from robocop_hosting import tree
+from robocop_hosting.errors import HostingError
 from robocop_hosting.package import MAX_NAMED
 from robocop_hosting.scripts import files_below
 from robocop_hosting.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
 
+from ..errors import GradingError
 from .bubblewrap import OWN_ENVIRONMENT, Sandbox, change_owner, user
 from .guard import Guard
 from .limits import BUILD_TIMEOUT, MAX_BUILD_CPU_TIME, MAX_SOURCE

@@ -15,9 +15,9 @@ from typing import Callable, List, Optional, Sequence, Set
 
 import psutil
 
-from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.process.child import kill_tree
 from robocop_hosting import tree
+from robocop_hosting.errors import HostingError
 
 from .limits import MAX_DISK, MAX_MEMORY, MAX_PROCESSES
 

@@ -4,9 +4,8 @@ import contextlib
 import socket
 from typing import Iterator, Tuple
 
-from aro_robocop_goto_as.errors import GraderLostError
-
 from ..agent import wire
+from ..errors import GraderLostError
 
 MAX_FRAME = 8 * 1024**2  # bytes
 MAX_UNSENT = 16 * 1024**2  # bytes that the node does not read

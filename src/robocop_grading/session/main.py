@@ -3,8 +3,7 @@
 import sys
 from pathlib import Path
 
-from aro_robocop_goto_as.errors import GraderLostError
-
+from ..errors import GraderLostError
 from ..record import read
 from .bridge import BridgeRun
 from .job import Job, begin_to_tell, tell

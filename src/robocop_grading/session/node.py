@@ -8,11 +8,11 @@ import struct
 from subprocess import PIPE, STDOUT
 from typing import Any, Callable, List, NamedTuple
 
-from aro_robocop_goto_as.errors import GraderLostError
 from aro_robocop_goto_as.process import child
 
 from .. import record as rec
 from ..agent import wire
+from ..errors import GraderLostError
 from ..sandbox.guard import Guard
 from ..sandbox.limits import MAX_IDLE, MAX_STILL
 from ..submission import CHANNEL

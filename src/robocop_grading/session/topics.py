@@ -12,10 +12,9 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Set
 
 import genpy
 
-from aro_robocop_goto_as.errors import GraderLostError
-
 from .. import record as rec
 from ..agent import wire
+from ..errors import GraderLostError
 
 NAME = "/robocop_sim"  # of the grader's node
 MAX_WAITING, MAX_DECODED = 20_000, 16 * 1024**2  # messages, and their bytes, in one turn; further ones are dropped

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from grading_records import PLAN
 
-from aro_robocop_goto_as.errors import UngradableError
+from robocop_grading.errors import UngradableError
 from robocop_grading.grader import grade
 from robocop_grading.record import Death, Line, Record
 from robocop_grading.runner import Recorded, Runner

@@ -4,7 +4,7 @@ import zipfile
 
 import pytest
 
-from aro_robocop_goto_as.errors import UngradableError
+from robocop_grading.errors import UngradableError
 from robocop_grading.packages import Packages, provide
 
 

@@ -12,8 +12,9 @@ from grading_records import LIMITS, PLAN, PLAN_FILE
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.errors import ParameterError, PlanError
+from aro_robocop_goto_as.errors import ParameterError
 from robocop_grading.checks import CHECKS
+from robocop_grading.errors import PlanError
 from robocop_grading.packages import Packages
 from robocop_grading.plan import PARTS, Block
 from robocop_grading.plan_file import MAX_SEED, drawn, load

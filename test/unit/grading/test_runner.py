@@ -3,7 +3,7 @@
 import pytest
 from grading_records import PLAN
 
-from aro_robocop_goto_as.errors import GradingError, NoTimeError, UngradableError
+from robocop_grading.errors import GradingError, NoTimeError, UngradableError
 from robocop_grading.record import Death, Record, write
 from robocop_grading.runner import Runner
 

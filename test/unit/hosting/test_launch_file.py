@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from hosted_packages import tree
 
-from aro_robocop_goto_as.errors import HostingError
+from robocop_hosting.errors import HostingError
 from robocop_hosting.launch_file import LaunchFile, read
 from robocop_hosting.workspace import run_plain
 

@@ -7,7 +7,7 @@ from typing import Dict
 import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
-from aro_robocop_goto_as.errors import HostingError
+from robocop_hosting.errors import HostingError
 from robocop_hosting.package import find_package, names_gazebo, started
 from robocop_hosting.workspace import run_plain
 

@@ -6,7 +6,7 @@ from typing import Dict, List, Optional, Tuple
 import pytest
 from hosted_packages import tree
 
-from aro_robocop_goto_as.errors import HostingError
+from robocop_hosting.errors import HostingError
 from robocop_hosting.launch_file import LaunchNode
 from robocop_hosting.scripts import choose, interpreter, obstacles
 

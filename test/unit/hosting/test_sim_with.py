@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
-from aro_robocop_goto_as.errors import HostingError
 from aro_robocop_goto_as.names import PACKAGE
+from robocop_hosting.errors import HostingError
 from robocop_hosting.launch_file import LaunchNode
 from robocop_hosting.package import Started, find_package
 from robocop_hosting.scripts import Choice

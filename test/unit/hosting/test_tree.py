@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from aro_robocop_goto_as.errors import HostingError
 from robocop_hosting import tree
+from robocop_hosting.errors import HostingError
 from robocop_hosting.tree import read_bytes
 
 NESTED = "import os\nfor _ in range(1500):\n    os.mkdir('nested')\n    os.chdir('nested')\nopen('file', 'w').close()\n"

@@ -3,7 +3,7 @@
 import os
 import re
 from dataclasses import dataclass
-from typing import Dict, List, Mapping, Optional, Set, Tuple
+from typing import Dict, Iterator, List, Mapping, Optional, Set, Tuple
 
 import numpy as np
 
@@ -55,6 +55,7 @@ class Contents:
         self.models: Dict[str, Pose3D] = {}
         self.ignored: List[str] = []
         self.approximated: List[str] = []
+        self.missing: Dict[str, str] = {}  # models without a folder on this machine: where the first use of each is
         self.used: Set[Tuple[str, ...]] = set()  # paths of models, links, collisions: names, the outermost's first
         self.count = 0  # of models
         self.state: SavedPoses = {}
@@ -75,14 +76,33 @@ class Contents:
             self.models,
             has_spawn=self.spawn is not None,
             has_saved_robot=self.saved_robot is not None,
-            approximated=tuple(dict.fromkeys(self.approximated)),
+            approximated=tuple(dict.fromkeys([*self.approximated, *self._missing_models()])),
         )
+
+    def _missing_models(self) -> Iterator[str]:
+        """One text about all models that are not on this machine, as with Gazebo without network; none if all are."""
+        if self.missing:
+            names = ", ".join(f"{name} ({place})" for name, place in self.missing.items())
+            yield (
+                f"models that are not on this machine are left out, and robots neither see nor touch them: {names}; to "
+                "have them, put their folders beside the world file or into ~/.gazebo/models; those of Gazebo are at "
+                "https://github.com/osrf/gazebo_models"
+            )
 
     def report(self, what: str, element: Element, is_different: bool = False) -> None:
         """Add an element to the world's `ignored`, or to its `approximated`, with its line and an included file."""
+        (self.approximated if is_different else self.ignored).append(f"{what} ({self._place(element)})")
+
+    def leave_out(self, what: str, reason: xml.NotSimulatedError, element: Element) -> None:
+        """Report an include or a collision that is not simulated."""
+        if isinstance(reason, xml.MissingModelError):
+            self.missing.setdefault(reason.name, self._place(element))
+        else:
+            self.report(f"{what} is left out: {reason}", element, is_different=True)
+
+    def _place(self, element: Element) -> str:
         file = file_of(element)
-        line = f"line {element.sourceline}" if file == self.path else f"{file}:{element.sourceline}"
-        (self.approximated if is_different else self.ignored).append(f"{what} ({line})")
+        return f"line {element.sourceline}" if file == self.path else f"{file}:{element.sourceline}"
 
     def check_children(self, element: Element, *read: str) -> None:
         """Report plugins, and children that are neither read nor known to be unused."""

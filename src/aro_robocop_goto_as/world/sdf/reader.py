@@ -104,7 +104,7 @@ class _Reader(Contents):
             with xml.about(include):
                 path = uris.locate_model(uri, file_of(include))
         except xml.NotSimulatedError as exc:
-            self.report(f"an include is left out: {exc}", include, is_different=True)
+            self.leave_out("an include", exc, include)
             return
         if os.path.realpath(path) in self.open_files:
             raise xml.error(include, f"'{uri}' is {path} again, within itself; expected another model")
@@ -177,7 +177,7 @@ class _Reader(Contents):
         try:
             geometry = read_shape(shape, self.triangles)
         except xml.NotSimulatedError as exc:
-            self.report(f"'{name}' is left out: {exc}", shape, is_different=True)
+            self.leave_out(f"'{name}'", exc, shape)
             return
         if geometry is None:
             return

@@ -36,8 +36,8 @@ def _split(uri: str) -> Tuple[str, str]:
 def locate(uri: str, file: str) -> str:
     """The file or directory that a URI in a file refers to: model://, package://, file://, or a plain path.
 
-    NotSimulatedError for a web address: nothing is downloaded. WorldError lists the places searched, or the supported
-    kinds of URI.
+    NotSimulatedError for a web address, because nothing is downloaded, and for a model without a folder. WorldError
+    lists the places searched, or the supported kinds of URI.
     """
     scheme, path = _split(uri)
     if scheme.lower() in _REMOTE:
@@ -49,7 +49,11 @@ def locate(uri: str, file: str) -> str:
         if os.path.exists(candidate):
             return os.path.normpath(candidate)
         looked_for.append(f"{os.path.normpath(candidate)} ({why})")
-    raise WorldError(f"'{uri}' was not found; looked for: {', '.join(dict.fromkeys(looked_for))}")
+    problem = f"'{uri}' was not found; looked for: {', '.join(dict.fromkeys(looked_for))}"
+    name = path.partition("/")[0]
+    if scheme == "model" and not any(os.path.exists(it) for it, _ in _candidates(scheme, name, os.path.abspath(file))):
+        raise xml.MissingModelError(name, problem)
+    raise WorldError(problem)
 
 
 def locate_model(uri: str, file: str) -> str:

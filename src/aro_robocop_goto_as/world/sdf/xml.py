@@ -29,6 +29,14 @@ class NotSimulatedError(WorldError):
     """An element, mesh or URI is not simulated, so its element is left out; the message begins with its name."""
 
 
+class MissingModelError(NotSimulatedError):
+    """The folder of a model is nowhere on this machine; the message lists the places searched."""
+
+    def __init__(self, name: str, message: str) -> None:
+        super().__init__(message)
+        self.name = name  # of the model
+
+
 @contextmanager
 def about(element: Element) -> Iterator[None]:
     """Raise a WorldError of this block as an error about an element."""

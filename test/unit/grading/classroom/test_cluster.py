@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from aro_robocop_goto_as.errors import NoTimeError
 from robocop_grading.classroom import cluster
+from robocop_grading.errors import NoTimeError
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,9 @@ import os
 
 import pytest
 
-from aro_robocop_goto_as.errors import GradingError, RobocopError
+from aro_robocop_goto_as.errors import RobocopError
 from robocop_grading.classroom.hand_ins import collect, unpacked
+from robocop_grading.errors import GradingError
 
 
 def problem_of(path):

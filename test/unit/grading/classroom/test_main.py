@@ -5,9 +5,9 @@ import time
 import pytest
 from grading_records import PLAN, keep, keep_grade
 
-from aro_robocop_goto_as.errors import GradingSetupError
 from robocop_grading.classroom.main import Class, chosen, class_seed
 from robocop_grading.classroom.results import Results
+from robocop_grading.errors import GradingSetupError
 from robocop_grading.judge import Grade
 from robocop_grading.plan_file import MAX_SEED
 

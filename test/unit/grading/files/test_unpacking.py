@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from aro_robocop_goto_as.errors import GradingError, SubmissionError
 from robocop_grading.cli import unpacked_path
+from robocop_grading.errors import GradingError, SubmissionError
 from robocop_grading.files import archives, unpacking
 
 SERVER = "robocop_goto_as.py"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from aro_robocop_goto_as.errors import GradingError
+from robocop_grading.errors import GradingError
 from robocop_grading.sandbox import build
 from robocop_hosting.workspace import output_of
 

@@ -8,7 +8,7 @@ import pytest
 from std_msgs.msg import String
 from support import ROOT
 
-from aro_robocop_goto_as.errors import GraderLostError
+from robocop_grading.errors import GraderLostError
 from robocop_grading.session import node as module
 from robocop_grading.session.job import Job
 from robocop_grading.session.node import Node, Spent

@@ -8,8 +8,8 @@ from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import Float64, String
 
-from aro_robocop_goto_as.errors import GraderLostError
 from robocop_grading.agent import wire
+from robocop_grading.errors import GraderLostError
 from robocop_grading.record import MAX_TEXT
 from robocop_grading.session.topics import MAX_WAITING, Topics
 

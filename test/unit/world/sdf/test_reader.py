@@ -178,9 +178,9 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
     "model without a name": ("<model><static>true</static></model>", 3, ["<model> has no name"]),
     "include without uri": ("<include><name>i</name></include>", 3, ["<uri>"]),
     "mesh that isn't there": (
-        model(collision("<mesh>\n<uri>model://a/b.dae</uri></mesh>")),
+        model(collision("<mesh>\n<uri>file://a/b.dae</uri></mesh>")),
         5,
-        ["model://a/b.dae", "m/l/c", "not found"],
+        ["file://a/b.dae", "m/l/c", "not found"],
     ),
     "no shape": (model(collision("")), 4, ["0 shapes"]),
     "pose relative to a frame": (
@@ -231,11 +231,6 @@ BROKEN = {  # case: (body from line 3 on, line of the error, what the message mu
     ),
     "spawn on a model": ('<frame name="robot_spawn" attached_to="m"/>', 3, ["robot_spawn", "attached"]),
     "two spawns": ('<frame name="robot_spawn"/>\n<frame name="robot_spawn"/>', 4, ["robot_spawn", "second"]),
-    "model that isn't there": (
-        "<include><uri>model://jersey_barrier</uri></include>",
-        3,
-        ["'model://jersey_barrier' was not found; looked for", "models/jersey_barrier"],
-    ),
     "too many models within models": (nested(21), 3, ["more than 20 models within each other"]),
     "unknown part of a motion": (model("", pose=MOVER.format("<spin>1</spin>")), 3, ["<spin>", "turn, waypoint"]),
     "waypoints at one time": (
@@ -263,6 +258,21 @@ def test_broken_world_is_refused_with_file_line_and_name(tmp_path, body, line, n
     message = raised_by(path)
     assert message.startswith(f"{path}:{line}: ")
     assert [name for name in named if name not in message] == []
+
+
+def test_models_that_are_not_on_this_machine_are_left_out_and_listed_in_one_text(tmp_path):
+    table = collision("<mesh><uri>model://table/meshes/table.dae</uri></mesh>", name="table")
+    body = "<include><uri>model://mailbox</uri></include>\n" + model(table + collision(SPHERE)) + model(table, name="n")
+    world = load_world(world_file(tmp_path, body))
+    assert [obstacle.name for obstacle in world.obstacles] == ["m/l/c"]
+    (said,) = world.approximated
+    assert "mailbox (line 3), table (line 5);" in said and "https://github.com/osrf/gazebo_models" in said
+
+
+def test_file_that_a_model_on_this_machine_lacks_is_refused_with_the_places_searched(tmp_path, chair):
+    mesh = collision("<mesh><uri>model://chair/meshes/seat.dae</uri></mesh>")
+    said = raised_by(world_file(tmp_path, model(mesh)))
+    assert "'model://chair/meshes/seat.dae' was not found; looked for: " in said and "chair/meshes/seat.dae" in said
 
 
 def test_include_overrides_the_models_pose_and_name(tmp_path, chair):
