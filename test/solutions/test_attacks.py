@@ -57,7 +57,9 @@ def test_node_can_read_nothing_that_tells_scenarios_apart(tmp_path):
     text = RIGHT["base_server"].replace("\ndef wrap", f"{attacks.SPY}\ndef wrap", 1)
     text = text.replace(begin, f"        spy(self.server.current_goal.get_goal_id().id)\n{begin}", 1)
     run = recorded(text, tmp_path, only=("reaches_goal", "already_there", "only_ahead_counts"), budget=BUDGET)
-    seen = {name: [it.text for it in record.lines if it.text.startswith("SEEN")] for name, record in run.records.items()}
+    seen = {
+        name: [it.text for it in record.lines if it.text.startswith("SEEN")] for name, record in run.records.items()
+    }
     assert set(seen) == {"start", "left", "right", "already_there", "beside"}
     assert len({it for lines in seen.values() for it in lines}) == 1, seen
 

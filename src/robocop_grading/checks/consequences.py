@@ -4,7 +4,7 @@ from typing import Mapping, Pattern
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import STATUS_NAMES, SUCCEEDED, Feedback, Goal, Record, active_until, feedback_of, results_of
-from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, last_error, logged
+from .output import NO_STATE_LOGGED, TRACEBACK_LOGGED, UNCAUGHT, last_error, logged
 from .verdict import After, Failed
 
 # Kinds of failures.
@@ -22,6 +22,7 @@ ENOUGH = 4  # fewer commands show nothing
 MAX_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
 BELIEVED = 1.2 * GOAL_RADIUS  # [m]
 MIN_DELAY = 1.0  # [s] a callback that waits once at the start makes messages wait for less
+JUST_BEFORE = 1.0  # [s] before an end, in which an exception can be its cause
 ITERATION = 0.15  # [s] of a server's loop, with a tick of the recording
 
 
@@ -32,7 +33,7 @@ def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
 
 def logged_cause(record: Record, end: float) -> str:
     """What the log says about why a goal ended wrongly at a time [s]; empty if it says nothing."""
-    if logged(record, EXCEPTION_LOGGED, end):
+    if any(logged(record, pattern, end, end - JUST_BEFORE) for pattern in (UNCAUGHT, TRACEBACK_LOGGED)):
         return f"An exception was raised: {last_error(record, end)}"
     return NO_STATE if logged(record, NO_STATE_LOGGED, end) else ""
 
@@ -50,7 +51,7 @@ def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether an exception was logged before a goal ended otherwise than it should."""
-    return bool(failure.kind) and logged(record, EXCEPTION_LOGGED, end_of(record, failure))
+    return bool(failure.kind) and logged(record, UNCAUGHT, end_of(record, failure))
 
 
 def unpublished(records: Mapping[str, Record], name: Pattern[str]) -> str:

@@ -67,6 +67,11 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), state, goal)
 
 
+def wrong_success(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+    """What went wrong with a goal that did not succeed, or not at its position."""
+    return wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
+
+
 def of_goals(record: Record, problem: Callable[[Goal], Optional[Failed]]) -> Verdict:
     """The first problem that a goal has."""
     if not record.goals:
@@ -82,7 +87,7 @@ def narrow_obstacle(record: Record) -> str:
     side = "left" if sum(across[0]) > 0.0 else "right"
     return (
         f"A narrow obstacle a little to the {side} was missed or noticed too late, although a wall is noticed. Do the "
-        "beams on both sides of straight ahead count, and does the nearest of them decide?"
+        "beams on both sides of straight ahead count, as far as the robot is wide, and does the nearest of them decide?"
     )
 
 

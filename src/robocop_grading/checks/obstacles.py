@@ -20,12 +20,11 @@ from ..record import (
 )
 from ..texts import sentences
 from .consequences import AT_FIRST, ENDING, MOVES_FIRST, NO_RESULT, SUCCESS, TOO_EARLY, late, logged_cause, unpublished
-from .endings import MOVING, keeps_moving, narrow_obstacle, of_goals, wrong_ending
-from .output import EXCEPTION_LOGGED, logged
+from .endings import MOVING, keeps_moving, narrow_obstacle, of_goals, wrong_ending, wrong_success
+from .output import EXECUTE_RAISED, logged
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
-PAST = 0.5  # share of the way to a goal beside obstacles after which the robot has passed some
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
 ABORTED_FAR = (
     f"The goal was aborted farther than {STOP_DISTANCE:g} m from the obstacle: is the threshold another one, do beams "
@@ -72,7 +71,7 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
         cause = narrow_obstacle(record) or "The obstacle was detected too late"
         return Failed("a stop before the obstacle", "contact", end, cause)
     wanted = f"an abort at {STOP_DISTANCE:g} m"
-    if logged(record, EXCEPTION_LOGGED, end):
+    if logged(record, EXECUTE_RAISED, end, goal.time):
         return Failed(wanted, "an exception", end, logged_cause(record, end), "an exception", goal)
     clearances = [sample.ahead for sample in samples_between(record, end - 0.25, end)]
     if clearances and min(clearances) > limits.abort_farthest:
@@ -129,11 +128,7 @@ AT_WALL = After("stops_at_obstacle", lambda _, failure, __: failure.goal is not 
 @check("distances", after=(ABORTS_EARLY, *ENDING), needs=("reaches_goal",))
 def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     """Obstacles beside or behind the robot do not abort a goal."""
-    verdict = of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
-    ways = [[errors_at(it, goal)[0] for it in samples_between(record, goal.time, math.inf)] for goal in record.goals]
-    if verdict is PASSED and not all(way and min(way) < (1.0 - PAST) * way[0] for way in ways):
-        return NotReached("the robot did not drive past the obstacles")
-    return verdict
+    return of_goals(record, lambda goal: wrong_success(record, goal, limits))
 
 
 @check("distances", after=(*ENDING, AT_WALL, STANDS))
@@ -147,7 +142,7 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
     if problem is None:
         return PASSED
     problem = replace(problem, goal=goal)
-    if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind == MOVING:
+    if logged(record, EXECUTE_RAISED, problem.time, goal.time) or problem.kind == MOVING:
         return problem
     hint = ""
     if problem.kind in (STATUS_NAMES[ABORTED], TOO_EARLY):

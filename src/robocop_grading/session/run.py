@@ -40,6 +40,7 @@ class Run:
         self.marks: Dict[str, float] = {}
         self.death_recorded = False
         self._spent = Spent()
+        self._started = Pose2D()  # odom_from_footprint when the node was started
         self.topics.listen("/cmd_vel", Twist, self._on_command)
         self.topics.listen("/rosout", Log, self._on_log)
 
@@ -68,6 +69,7 @@ class Run:
         record = Record(
             name,
             self.job.part,
+            started=self._started,
             marks=self.marks,
             other_types=others,
             programs=tuple(sorted(self.topics.programs)),
@@ -106,6 +108,7 @@ class Run:
         """Start the node that is graded."""
         self.death_recorded = False
         stage = self.stage
+        self._started = stage.odom_from_footprint()
         now_ns, clock_ns = stage.sim.stamp_ns, stage.clock_ns
         stage.node = Node(self.job, self.topics, self.services, self._on_line, now_ns, clock_ns, self._spent)
 

@@ -47,7 +47,9 @@ def test_server_that_never_succeeds_is_not_blamed_for_odd_ranges() -> None:
 
 
 def test_exception_in_a_click_callback_is_named_as_the_cause_of_a_missing_goal() -> None:
-    printed = lines("bad callback: <goal_cb>", "Traceback (most recent call last):", "AttributeError: no attribute 'x'")
+    printed = lines(
+        "[ERROR] bad callback: <goal_cb>", "Traceback (most recent call last):", "AttributeError: no attribute 'x'"
+    )
     record = changed(name="click", part="bridge", goals=(), clicks=(CLICK,), lines=printed)
     assert "AttributeError: no attribute 'x'" in cause_of("bridge_alive", record)
     checks = checks_of(record)
@@ -65,10 +67,13 @@ def test_wall_that_was_hit_without_odd_ranges_is_not_blamed_on_them() -> None:
 
 
 def test_what_a_wrong_error_leads_to_follows_from_it_and_another_mistake_does_not() -> None:
-    misled = replace(fed_back(position=lambda d: d / 20.0), results=EARLY)
+    def ended_early(record: Record) -> Record:
+        return replace(record, results=EARLY, feedback=record.feedback[:51])
+
+    misled = ended_early(fed_back(position=lambda d: d / 20.0))
     still_driving = {"stands_at_end": ""}
     assert failures(misled) == {"feedback_position": "", "reaches_goal": "feedback_position", **still_driving}
-    unrelated = replace(fed_back(position=lambda _: 1.0), results=EARLY)  # its feedback did not say that it was there
+    unrelated = ended_early(fed_back(position=lambda _: 1.0))  # its feedback did not say that it was there
     assert failures(unrelated) == {"feedback_position": "", "reaches_goal": "", **still_driving}
 
 
