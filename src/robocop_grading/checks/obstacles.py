@@ -112,7 +112,7 @@ def _approach(record: Record, goal: Goal) -> Optional[Failed]:
     wanted, seen = f"an abort at {before[-1]:.2f} m", f"{nearest:.2f} m ahead of it"
     cause = (
         f"The robot drove towards an obstacle that was {before[-1]:.2f} m ahead from the start: is the threshold "
-        f"less than {STOP_DISTANCE:g} m, or is the distance not checked before the robot drives?"
+            f"less than {STOP_DISTANCE:g} m, or is the distance not checked before the robot drives, or near the goal?"
     )
     return Failed(wanted, seen, goal.time, cause, MOVES_FIRST, goal)
 
