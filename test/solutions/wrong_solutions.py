@@ -634,7 +634,7 @@ WRONG: Tuple[Wrong, ...] = (
     _server(
         "cancel_request_without_a_goal_is_kept",
         "next_goal",
-        "set_preempted is called although neither",
+        "Does a cancel request that came before this goal end it",
         ("import rospy\n", "import rospy\nfrom actionlib_msgs.msg import GoalID\n"),
         ("        self.count = 0\n", f"        self.cancelled = False\n{SUBSCRIBE_CANCEL}"),
         (REQUESTED, "            if self.cancelled or self.server.is_preempt_requested():"),

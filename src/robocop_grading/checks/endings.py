@@ -103,10 +103,10 @@ def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
     if told:
         return told
     if status == PREEMPTED and not _asked_to_end(record, goal, end):
-        return sentences(
-            "set_preempted is called although neither a cancel request nor a newer goal has come",
-            "Is is_preempt_requested() called, with its parentheses?" if _at_once(record, goal) else "",
-        )
+        hint = "Is is_preempt_requested() called, with its parentheses?" if _at_once(record, goal) else ""
+        if any(cancel.time < goal.time for cancel in record.cancels):
+            hint = "Does a cancel request that came before this goal end it?"
+        return sentences("set_preempted is called although neither a cancel request nor a newer goal has come", hint)
     if wanted == ABORTED and status == SUCCEEDED:
         return "set_succeeded is called although the goal failed: call set_aborted"
     if wanted == SUCCEEDED and status == ABORTED:
