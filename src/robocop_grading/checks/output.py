@@ -34,6 +34,8 @@ FOLDER = re.compile(r"(?<=in file ).*/([^/]+ on line \d)")  # in Python's words 
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 UNKNOWN_TYPE = re.compile("Type .{1,100} if not loaded or supported")  # in tf2's words
 NOT_IMPORTED = "tf2 can transform messages of geometry_msgs only after: import tf2_geometry_msgs"
+NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
+JUST_BEFORE = 1.0  # [s] before a goal's end, in which an exception can be its cause
 DELAY = 0.25  # [s] after which a line has been read
 TRACEBACK = 40  # lines before the error in which its place is looked for
 
@@ -41,6 +43,13 @@ TRACEBACK = 40  # lines before the error in which its place is looked for
 def logged(record: Record, pattern: Pattern[str], until: float = math.inf, since: float = 0.0) -> bool:
     """Return whether a line that the node printed between two times [s] matches."""
     return any(pattern.search(line.text) for line in record.lines if since <= line.time <= until + DELAY)
+
+
+def logged_cause(record: Record, end: float) -> str:
+    """What the log says about why a goal ended wrongly at a time [s]; empty if it says nothing."""
+    if any(logged(record, pattern, end, end - JUST_BEFORE) for pattern in (UNCAUGHT, TRACEBACK_LOGGED)):
+        return f"An exception was raised: {last_error(record, end)}"
+    return NO_STATE if logged(record, NO_STATE_LOGGED, end) else ""
 
 
 def last_error(record: Record, until: float = math.inf) -> str:

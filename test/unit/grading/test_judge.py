@@ -42,8 +42,8 @@ def failures(record: Record) -> Dict[str, str]:
 
 def test_server_that_never_succeeds_is_not_blamed_for_odd_ranges() -> None:
     stuck = changed(results=(), problem="the robot made no progress for 8 s, and the goal did not end")
-    cause = cause_of("odd_scans", stuck, replace(stuck, name="odd_scan"))
-    assert cause.startswith("This follows from another failed check") and "NaN" not in cause
+    words = checks_of(stuck, replace(stuck, name="odd_scan"))["odd_scans"].words
+    assert words.startswith("failed: This follows from another failed check") and "NaN" not in words
 
 
 def test_exception_in_a_click_callback_is_named_as_the_cause_of_a_missing_goal() -> None:
@@ -181,3 +181,16 @@ def test_programs_of_ros_that_a_node_starts_are_named_whatever_failed() -> None:
     starts = replace(START, programs=("rostopic", "rosservice"))
     problems = graded(starts, replace(starts, name="left")).problems
     assert [it.startswith("server: it starts rosservice, rostopic: in a grading,") for it in problems] == [True]
+
+
+def test_missing_feedback_follows_from_the_exception_that_ended_its_timer() -> None:
+    printed = lines("Exception in thread Thread-6:", NO_NAME[0].text, "TypeError: tell() takes 1 argument")
+    assert failures(changed(lines=printed, feedback=())) == {"no_exception": "", "feedback_rate": "no_exception"}
+
+
+def test_rate_that_is_right_at_the_first_goal_and_grows_is_that_of_timers_that_go_on() -> None:
+    later = changed(name="far", goals=(replace(GOAL, time=0.0),), feedback=RIGHT.feedback * 5)
+    moved = replace(later, goals=(replace(GOAL, id="h", time=0.1),), results=(), statuses=())
+    fast = replace(moved, feedback=tuple(replace(it, id="h") for it in moved.feedback))
+    assert "right at the first goal and becomes higher" in cause_of("feedback_rate", RIGHT, fast)
+    assert "more often than 10 times" in cause_of("feedback_rate", later)
