@@ -107,8 +107,8 @@ def spy(goal_id):
 """What a server can read about a scenario except from its sensors, without the time."""
 LIE = """
 import os, struct, sys
-channel, scheduler = sys.modules['robocop_agent.channel'], sys.modules['robocop_agent.scheduler']
-wire, write = sys.modules['robocop_agent.wire'], channel.Channel._write
+channel, scheduler = sys.modules['robocop_agent.request_loop'], sys.modules['robocop_agent.scheduler']
+wire, write = sys.modules['robocop_agent.wire'], channel.RequestLoop._write
 def lied():
     os.write(1, b'LIED' + bytes([10]))
 def replace(replaced, lie):
@@ -116,7 +116,7 @@ def replace(replaced, lie):
         if kind == replaced:
             return lie(self, body)
         write(self, kind, body)
-    channel.Channel._write = written
+    channel.RequestLoop._write = written
 """
 LIES = {  # code after LIE, and what the report says
     "two_threads_silence": (
@@ -126,10 +126,10 @@ LIES = {  # code after LIE, and what the report says
         "it stopped answering",
     ),
     "done_before_it_is": (
-        "read, told = channel.Channel._read, set()\ndef hasty(self):\n    kind, body = read(self)\n"
+        "read, told = channel.RequestLoop._read, set()\ndef hasty(self):\n    kind, body = read(self)\n"
         "    if kind == wire.GO:\n        lied()\n        told.add(body[:8])\n"
         "        write(self, wire.DONE, body[:8] + struct.pack('<q', 1 << 62))\n"
-        "    return kind, body\nchannel.Channel._read = hasty\n"
+        "    return kind, body\nchannel.RequestLoop._read = hasty\n"
         "replace(wire.DONE, lambda self, b: b[:8] in told or write(self, wire.DONE, b))",
         "",
     ),
