@@ -65,7 +65,6 @@ SUBSCRIBE_CANCEL = (
     "        rospy.Subscriber('robocop_goto_as/cancel', GoalID, lambda _: setattr(self, 'cancelled', True))\n"
 )
 FEEDBACK_TIMER = "        rospy.Timer(rospy.Duration(0.1), self.tell)\n"
-TELL = "        self.server.publish_feedback(self.feedback)\n"
 DRIVE_BEGIN = "    def drive(self, v, w):\n"
 
 WRONG: Tuple[Wrong, ...] = (
@@ -646,20 +645,26 @@ WRONG: Tuple[Wrong, ...] = (
         "feedback_rate",
         "goes on after its result",
         ("        self.count = 0\n", f"        self.feedback = None\n{FEEDBACK_TIMER}"),
-        (PUBLISH, "            self.feedback = feedback\n"),
-        (DRIVE_BEGIN, f"    def tell(self, _event):\n        if self.feedback:\n    {TELL}\n{DRIVE_BEGIN}"),
+        (PUBLISH, f"            self.feedback = feedback\n{PUBLISH}"),
+        (
+            DRIVE_BEGIN,
+            "    def tell(self, _event):\n        if self.feedback and not self.server.is_active():\n"
+            f"            self.server.publish_feedback(self.feedback)\n\n{DRIVE_BEGIN}",
+        ),
         alone=True,
     ),
     _server(
         "timer_of_each_goal_goes_on",
         "feedback_rate",
         "right at the first goal",
-        (PUBLISH, "            self.feedback = feedback\n"),
-        (RATE, f"{RATE}        self.feedback = None\n{FEEDBACK_TIMER}"),
+        (PUBLISH, ""),
+        (RATE, f"{RATE}        self.goal = goal.position\n{FEEDBACK_TIMER}"),
         (
             DRIVE_BEGIN,
-            "    def tell(self, _event):\n        if self.server.is_active() and self.feedback:\n"
-            f"    {TELL}\n{DRIVE_BEGIN}",
+            "    def tell(self, _event):\n        if self.server.is_active():\n            x, y, yaw = self.pose\n"
+            "            dx, dy = self.goal.x - x, self.goal.y - y\n            errors = math.hypot(dx, dy), wrap(\n"
+            "                math.atan2(dy, dx) - yaw)\n"
+            f"            self.server.publish_feedback(GoToPositionFeedback(*errors, 'moving'))\n\n{DRIVE_BEGIN}",
         ),
         alone=True,
     ),
