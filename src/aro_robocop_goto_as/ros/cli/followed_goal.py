@@ -160,7 +160,7 @@ def _wait_or_explain(
     if not rospy.get_rostime():
         return standstill()
     silence = f"no answer from {action} for {time.monotonic() - started:.0f} s"
-    return f"{silence}{discovery.hint(action) or '; ' + discovery.advice(action)}"
+    return f"{silence}{discovery.hint(action) or '; ' + discovery.advice()}"
 
 
 def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
