@@ -6,7 +6,15 @@ from typing import Dict, List, Mapping, Tuple
 from .checks import CHECKS, Failed
 from .plan import AGAIN, Plan
 from .record import Record
-from .texts import text
+
+LEFT_BEHIND = (
+    "with a node that had served others, and passed with a new one, which counts: an earlier mistake may have left "
+    "something behind"
+)
+WENT_WRONG = (
+    "although no mistake had come before it, and passed when it was repeated with a new node: what goes wrong in a "
+    "node that has served a goal, or has run for some time?"
+)
 
 
 def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Record], List[str], List[str]]:
@@ -27,7 +35,7 @@ def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Recor
             chosen[name] = replace(best[name], name=name)
             counted.append(name)
         if not _fails(plan, best[name]):
-            told.append(text("left_behind" if is_left_behind else "went_wrong", name))
+            told.append(f"scenario {name} failed {LEFT_BEHIND if is_left_behind else WENT_WRONG}")
     return chosen, counted, told
 
 

@@ -10,12 +10,14 @@ from .checks.bridge import about_pending
 from .checks.topic_types import wrong_type
 from .plan import CheckPlan, Plan
 from .record import Record
-from .texts import sentences, text
+from .texts import sentences
 
 INCOMPLETE = "an incomplete one"
 FIRST = "action_server"  # the check without which no other one of a server is reached
 ALIVE = "stays_alive"
 NOT_STARTED = "the server did not start"
+PROGRAMS = "in a grading, the programs that a node starts find no ROS master; rospy can do the same in the node itself"
+TRUTH = "; the position comes from /odom, as on a real robot"
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
@@ -178,7 +180,7 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
 def _programs(records: Mapping[str, Record]) -> List[str]:
     """Notes about programs of ROS that the node starts."""
     programs = sorted({program for record in records.values() for program in record.programs})
-    return [text("programs_of_ros", ", ".join(programs))] if programs else []
+    return [f"it starts {', '.join(programs)}: {PROGRAMS}"] if programs else []
 
 
 def _unpublished(records: Mapping[str, Record]) -> List[str]:
@@ -187,7 +189,7 @@ def _unpublished(records: Mapping[str, Record]) -> List[str]:
     Topics of its own action server don't count: the server has no client when the record ends.
     """
     return [
-        text("truth_unpublished" if "ground_truth" in topic else "unpublished", topic)
+        f"it subscribes to {topic}, which nobody publishes{TRUTH if 'ground_truth' in topic else ''}"
         for record in records.values()
         for topic in record.unpublished
         if topic.rpartition("/")[0] not in record.servers

@@ -1,24 +1,4 @@
-"""The longer texts of causes, by their names; sentences made of parts; other people's texts, made safe to show."""
-
-import functools
-from typing import Mapping
-
-import yaml
-
-from robocop_hosting.workspace import places
-
-FILE = "config/grading_texts.yaml"  # of this package
-
-
-def text(name: str, *values: object) -> str:
-    """A text of FILE with these values, as of str.format()."""
-    return _texts()[name].format(*values)
-
-
-@functools.lru_cache(maxsize=None)
-def _texts() -> Mapping[str, str]:
-    texts: Mapping[str, str] = yaml.safe_load((places()[1] / FILE).read_text(encoding="utf-8"))
-    return texts
+"""Sentences made of parts; other people's texts, made safe to show."""
 
 
 def sentences(*parts: str) -> str:

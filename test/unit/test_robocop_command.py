@@ -248,6 +248,77 @@ def test_what_is_complete_is_used_while_another_set_up_of_the_checkout_is_runnin
     assert (done.returncode, done.stderr) == (0, "")
 
 
+def test_a_call_in_another_locale_builds_nothing(tmp_path):
+    command = ["localedef", "--quiet", "-i", "de_DE", "-f", "UTF-8", str(tmp_path / "de_DE.UTF-8")]
+    subprocess.run(command, check=True, timeout=SETUP_TIMEOUT)  # that sorts as if file names had no underscores
+    done = robocop("shell", "true", LC_ALL="de_DE.UTF-8", LOCPATH=str(tmp_path))
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+CATKIN_MAKE = """#!/bin/sh
+mkdir "$2/devel"
+touch "$2/devel/setup.bash"
+exit ${BUILD_STATUS:-0}
+"""
+
+
+@pytest.fixture
+def quick(checkout):
+    """A function that calls ./robocop in a checkout that lacks only the workspace; builds take no time."""
+    root = checkout.rename(checkout.parent / "quick")
+    (root / "install" / "deb-packages" / "run.txt").write_text("bash\n")
+    programs = root / ".robocop" / "venv" / "bin"
+    programs.mkdir(parents=True)
+    for name, script in (("catkin_make", CATKIN_MAKE), ("python", "#!/bin/sh\n")):
+        make_program(programs / name, script)
+    (programs.parent / "made-as").write_text(f"{programs.parent} on {os.path.realpath('/usr/bin/python3')}")
+    return lambda *arguments, **settings: robocop(*arguments, root=root, **settings)
+
+
+@pytest.fixture
+def user(quick, checkout):
+    """A process that runs out of the first workspace of this checkout until its input ends."""
+    script = str(checkout.parent / "quick" / "robocop")
+    command = [script, "shell", "sh", "-c", "echo $ROBOCOP_WS; read line"]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen(command, env=environment(), text=True, **pipes) as process:
+        process.workspace = Path(process.stdout.readline().strip()).parent
+        yield process
+        process.stdin.close()
+
+
+def test_a_build_takes_the_workspace_away_from_nothing_that_runs(quick, user):
+    state = user.workspace.parent
+    action = state.parent / "action" / "Other.action"
+    action.write_text("one")  # as a `git pull` does
+    assert quick("shell", "true", BUILD_STATUS="1").returncode == 1
+    assert (state / "workspace").resolve() == user.workspace, "a failed build leaves the old one in use"
+    done = quick("shell", "printenv", "ROBOCOP_WS")
+    assert done.stdout == f"{(state / 'workspace').resolve()}/devel\n" and user.workspace.is_dir(), done.stderr
+    assert (state / "workspace").resolve() != user.workspace
+    done = quick("clean")
+    assert done.returncode == 1 and f"  process {user.pid}: sh -c echo $ROBOCOP_WS; read line" in done.stderr
+
+    user.communicate("")
+    action.write_text("two")
+    assert quick("shell", "true").returncode == 0
+    assert list(state.glob("ws.*")) == [(state / "workspace").resolve()], "the last build removes what nobody uses"
+    assert quick("clean").returncode == 0 and not state.exists()
+
+
+def test_packages_are_replaced_when_nothing_runs_that_uses_them(quick, user, checkout):
+    root = user.workspace.parent.parent
+    (root / "install" / "requirements.txt").write_text("another==1\n")
+    setup = [str(root / "robocop"), "setup"]
+    with subprocess.Popen(setup, env=environment(), stderr=subprocess.PIPE, text=True) as waiting:
+        said = waiting.stderr.readline() + waiting.stderr.readline()
+        assert "another version of Python packages would break what still runs in this checkout; waiting" in said
+        assert f"  process {user.pid}: sh -c " in said
+        assert waiting.poll() is None
+        user.communicate("")
+        assert "installing the Python packages of requirements.txt" in waiting.communicate(timeout=SETUP_TIMEOUT)[1]
+
+
 @pytest.mark.slow
 def test_pybullet_that_can_not_be_built_is_reported_with_the_end_of_the_log(checkout, index):
     done = in_copy(checkout, "setup", BUILD_FAILS="1", **index)
@@ -259,7 +330,7 @@ def test_pybullet_that_can_not_be_built_is_reported_with_the_end_of_the_log(chec
 
 @pytest.mark.slow
 @pytest.mark.timeout(900)
-def test_path_with_a_space_and_two_calls_at_once_then_broken_then_moved(checkout, index):
+def test_path_with_a_space_and_two_calls_at_once_then_another_action_then_moved(checkout, index):
     """One test, as each step needs the set-up of the one before, which takes seconds."""
     cache = checkout.parent / "cache"
     show = ("shell", "python3", "-c", "import aro_robocop_goto_as.msg as m; print(m.__file__)")
@@ -281,10 +352,9 @@ def test_path_with_a_space_and_two_calls_at_once_then_broken_then_moved(checkout
     assert in_copy(checkout, "goto", "1", "2").stdout == "started\n"
     assert in_copy(checkout, "shell", "rosrun", "aro_robocop_goto_as", "robocop_goto.py").stdout == "started\n"
 
-    # An interrupted build of a changed action leaves half a workspace and no stamp.
-    shutil.rmtree(next(cache.glob("robocop/*/ws/devel")))
     (checkout / "action" / "Other.action").write_text("---\n---\n")
-    assert in_copy(checkout, *show).returncode == 0
+    code = "from aro_robocop_goto_as.msg import OtherAction"
+    assert in_copy(checkout, "shell", "python3", "-c", code).returncode == 0
     assert in_copy(checkout, *show).stderr == ""  # nothing left to do
 
     moved = checkout.rename(checkout.parent / "moved")

@@ -14,7 +14,7 @@ from ..probes import master, x_display
 
 PYTHON = "/usr/bin/python3"
 PACKAGES = ("rospy", "numpy", "pybullet")
-STAMPS = ("venv/made-as", "venv/requirements", "ws/built-from")  # what a complete set-up leaves
+STAMPS = ("venv/made-as", "venv/requirements", "workspace/built-from")  # what a complete set-up leaves
 SETTINGS = ("ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "ROS_HOME")
 OPTIONAL_LISTS = ("rviz", "gui", "hosting", "grade", "class", "test")  # in install/deb-packages/
 # What neither ROS in /opt/ros, which is not installed by ./robocop, nor the system may lack.

@@ -1,9 +1,10 @@
 """Turns ./robocop into another program: installs the packages that the program needs, then becomes the program.
 
-It calls the shell script `robocop` back: `_set_up PART...` installs, and `_environment` prints the workspace's
-environment.
+It calls the shell script `robocop` back: `_set_up PART...` installs, and `_environment DEVEL` prints the environment of
+a workspace.
 """
 
+import fcntl
 import os
 import shlex
 import signal
@@ -74,6 +75,22 @@ def need(*parts: str) -> None:
     """Like set_up, but end this program on a failure, which has been reported."""
     if not set_up(*parts):
         sys.exit(1)
+    if not is_dry_run():
+        _keep_workspace()
+
+
+def _keep_workspace() -> None:
+    """Choose the newest workspace; no later set-up removes it before this program, and what it becomes, has ended."""
+    workspace = (state() / "workspace").resolve()
+    stamp = workspace / "built-from"
+    try:
+        lock = os.open(str(stamp), os.O_RDONLY)
+        fcntl.flock(lock, fcntl.LOCK_SH)
+        os.stat(stamp)
+    except FileNotFoundError:
+        refuse(f"{workspace} was replaced at this moment; try again")
+    os.set_inheritable(lock, True)
+    os.environ["ROBOCOP_WS"] = f"{workspace}/devel"
 
 
 def start(*command: str) -> NoReturn:
@@ -88,7 +105,7 @@ def start(*command: str) -> NoReturn:
 
 def workspace_environment() -> Dict[bytes, bytes]:
     """This process's environment, with the additions of the workspace's set-up files; a failure ends this program."""
-    done = subprocess.run([SCRIPT, "_environment"], stdout=subprocess.PIPE)
+    done = subprocess.run([SCRIPT, "_environment", os.environ["ROBOCOP_WS"]], stdout=subprocess.PIPE)
     if done.returncode != 0:
         sys.exit(1)  # it has said why
     lines = (line.partition(b"=") for line in done.stdout.split(b"\0") if line)

@@ -1,7 +1,7 @@
 """Checks that goals are reached: near, behind, far away, and where the robot already is."""
 
 import math
-from typing import Any, Optional, Sequence, Tuple
+from typing import Optional, Sequence
 
 from ..handout import GOAL_RADIUS, Limits
 from ..record import (
@@ -15,7 +15,6 @@ from ..record import (
     samples_between,
     wrapped,
 )
-from ..texts import text
 from .consequences import ENDING, ITERATION, SUCCESS_LATE, alike
 from .endings import of_goals, success_too_far, wrong_ending
 from .turning import MIN_SPEED
@@ -26,6 +25,9 @@ LATE_AT_REST = 1.0  # [s] likewise of a robot that stands at the goal meanwhile
 LARGE_TURN = 0.5  # [rad] of a robot at the goal
 AT_ONCE = 2.0  # [s] from a goal that is reached already to its success
 LONG_TURN = "a long turn"
+END_THERE = f"end the goal as soon as position_error is below {GOAL_RADIUS:g} m"
+WAITS = f"The robot stands at the goal, but the result comes later: {END_THERE}"
+TURNS = f"The robot turns at the goal: {END_THERE}"
 
 
 @check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
@@ -48,27 +50,33 @@ def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Fa
     for (before, far), (after, near) in zip(way, way[1:]):
         if near < GOAL_RADIUS <= far:
             reached = before + (after - before) * (far - GOAL_RADIUS) / (far - near)
-            name, *values = _lateness(record, goal, samples_between(record, reached + LATE, end), limits)
+            cause = _lateness(record, goal, samples_between(record, reached + LATE, end), limits)
             least = min(distance for _, distance in way)
-            exact = name in ("waits_at_goal", "turns_at_goal") or least < 2.0 * GOAL_RADIUS - limits.reached
-            if end - reached <= (LATE_AT_REST if name == "waits_at_goal" else LATE) or not exact:
+            exact = cause in (WAITS, TURNS) or least < 2.0 * GOAL_RADIUS - limits.reached
+            if end - reached <= (LATE_AT_REST if cause == WAITS else LATE) or not exact:
                 return None
             seen = f"success {end - reached:.2f} s later, {least:.2f} m from the goal"
-            return Failed(f"success at {GOAL_RADIUS:g} m", seen, reached, text(name, *values), SUCCESS_LATE, goal)
+            return Failed(f"success at {GOAL_RADIUS:g} m", seen, reached, cause, SUCCESS_LATE, goal)
     return None
 
 
-def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> Tuple[Any, ...]:
-    """A text's name and values: what the robot does when success is late, and what the server has reported."""
+def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> str:
+    """Why success is late: what the robot does meanwhile, and what the server has reported."""
     begin, end = (samples[0].time, samples[-1].time) if samples else (0.0, 0.0)
     drives = any(abs(command.v) > MIN_SPEED for command in record.commands if begin <= command.time < end)
     if not drives and all(abs(sample.v) < limits.standing_v for sample in samples):
         turn = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
-        return "turns_at_goal" if turn > LARGE_TURN else "waits_at_goal", GOAL_RADIUS
+        return TURNS if turn > LARGE_TURN else WAITS
     own = [it.position_error for it in feedback_of(record, goal) if it.time < end - ITERATION]
     if own and min(own) >= GOAL_RADIUS:
-        return "unaware_of_goal", GOAL_RADIUS, own[-1]
-    return "goes_on", GOAL_RADIUS
+        return (
+            f"The robot comes within {GOAL_RADIUS:g} m, but the last position_error in the feedback is {own[-1]:.3f} "
+            "m: is it calculated in each iteration, ten times a second, from the newest pose of /odom?"
+        )
+    return (
+        f"The goal goes on although the robot is within {GOAL_RADIUS:g} m: is the threshold of position_error another "
+        "one, or is it not compared in each iteration?"
+    )
 
 
 SWERVES = After("drives_straight", kind=LONG_TURN)
@@ -93,7 +101,11 @@ def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
     if total <= needed + 2.0:
         return None
     wanted, seen = f"a turn of about {needed:.1f} rad", f"{total:.1f} rad"
-    return Failed(wanted, seen, goal.time, text("long_turn"), LONG_TURN, goal)
+    cause = (
+        "The robot turns much more than it needs to: does it turn by the sign of a wrapped angle_error, and does "
+        "it stop turning in time?"
+    )
+    return Failed(wanted, seen, goal.time, cause, LONG_TURN, goal)
 
 
 @check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
@@ -119,5 +131,6 @@ def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
         return None
     seen = f"a result after {end - goal.time:.1f} s and {moved:.2f} m of motion"
     if moved <= 0.05:
-        return Failed("success at once", seen, goal.time, text("waits_at_goal", GOAL_RADIUS), SUCCESS_LATE, goal)
-    return Failed("success at once", seen, goal.time, text("check_before_moving", GOAL_RADIUS))
+        return Failed("success at once", seen, goal.time, WAITS, SUCCESS_LATE, goal)
+    cause = f"position_error is below {GOAL_RADIUS:g} m from the start: check it before moving"
+    return Failed("success at once", seen, goal.time, cause)

@@ -5,7 +5,6 @@ from typing import List, NamedTuple, Optional, Set, Tuple
 
 from ..handout import Limits
 from ..record import ACTIVE, LOST, PENDING, STATUS_NAMES, SUCCEEDED, Line, Record
-from ..texts import text
 from .verdict import Failed
 
 NO_REPORT, EMPTY, UNTRUE = "no report", "empty report", "untrue report"  # kinds of failures
@@ -23,6 +22,24 @@ MOSTLY = 0.8
 SOMETIMES = 0.3  # share of reports that name the same states whatever the true one is
 DONE = 7  # the number of actionlib's CommState for a goal that has ended, in which ACTIVE is 2
 CLIENT_ACTIVE = 2
+REPORT = "report what get_state() returns"
+SAYS_NOTHING = "The reports say nothing about the state"
+UNCALLED_REPORT = (
+    "The report shows a function instead of the state: the parentheses of its call are missing, as in get_state()"
+)
+REPORTED_ONCE = (
+    "The status is not reported repeatedly while a goal is active: is the rospy.Timer's period too long, does anything "
+    "end it, or does it only report changes?"
+)
+NOTHING_REPORTED = (
+    "Nothing is logged, printed or published about the state while a goal is active: a rospy.Timer has to report it "
+    "repeatedly, also when it has not changed"
+)
+SEVERAL_STATES = (
+    "A report that names several states says nothing if it names the same ones whatever the true one is: report the "
+    "state that get_state() returns, and no other one"
+)
+NUMBERS = "GoalStatus has PENDING = 0, ACTIVE = 1, PREEMPTED = 2, SUCCEEDED = 3, ABORTED = 4"
 
 
 def _content(line: Line) -> str:
@@ -54,9 +71,9 @@ def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
     if len(_began(lines)) >= limits.status_reports:
         empty = next(line for line in lines if _says_nothing(line))
         uncalled = UNCALLED.search(_content(empty))
-        cause = text("uncalled_report") if uncalled else text("empty_report", _content(empty))
+        cause = UNCALLED_REPORT if uncalled else f'{SAYS_NOTHING}, as in "{_content(empty)}": {REPORT}'
         return Failed(wanted, f"{count}", empty.time, cause, EMPTY)
-    cause = text("reported_once" if count else "nothing_reported")
+    cause = REPORTED_ONCE if count else NOTHING_REPORTED
     return Failed(wanted, f"{count}", start, cause, NO_REPORT)
 
 
@@ -112,7 +129,7 @@ def _untrue(record: Record) -> Optional[Failed]:
     if len(several) > 1 and len(several) > SOMETIMES * len(reports):
         first = several[0]
         seen = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
-        return Failed(STATUS_NAMES[first.true], seen, first.time, text("several_states"), UNTRUE)
+        return Failed(STATUS_NAMES[first.true], seen, first.time, SEVERAL_STATES, UNTRUE)
     wrong = [] if _is_client_state(reports) else [report for report in reports if not report.is_true]
     true_states = dict.fromkeys(report.true for report in reports)
     for true in true_states:
@@ -122,6 +139,8 @@ def _untrue(record: Record) -> Optional[Failed]:
             first = untrue[0]
             names = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
             shifts = {state - report.true for report in reports for state in report.states}
-            cause = "shifted_states" if len(true_states) > 1 and len(shifts) == 1 else "untrue_state"
-            return Failed(STATUS_NAMES[true], names, first.time, text(cause, names, STATUS_NAMES[true]), UNTRUE)
+            cause = f"The bridge reports {names} while the goal is {STATUS_NAMES[true]}: {REPORT}"
+            if len(true_states) > 1 and len(shifts) == 1:
+                cause = f"The names of the states are shifted: {names} is reported for {STATUS_NAMES[true]}; {NUMBERS}"
+            return Failed(STATUS_NAMES[true], names, first.time, cause, UNTRUE)
     return None

@@ -4,7 +4,6 @@ from typing import Mapping, Pattern
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import STATUS_NAMES, SUCCEEDED, Feedback, Goal, Record, active_until, feedback_of, results_of
-from ..texts import text
 from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, last_error, logged
 from .verdict import After, Failed
 
@@ -17,6 +16,7 @@ NOT_RESET = "not reset"  # what an earlier goal has left behind
 MOVES_FIRST = "moves first"  # before the errors and the distance are known
 TOO_EARLY = "too early"  # an abort too far away from the obstacle
 
+NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and driving are right
 ENOUGH = 4  # fewer commands show nothing
 MAX_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
@@ -34,7 +34,7 @@ def logged_cause(record: Record, end: float) -> str:
     """What the log says about why a goal ended wrongly at a time [s]; empty if it says nothing."""
     if logged(record, EXCEPTION_LOGGED, end):
         return f"An exception was raised: {last_error(record, end)}"
-    return text("no_terminal_state") if logged(record, NO_STATE_LOGGED, end) else ""
+    return NO_STATE if logged(record, NO_STATE_LOGGED, end) else ""
 
 
 def end_of(record: Record, failure: Failed) -> float:
@@ -63,7 +63,14 @@ def late(records: Mapping[str, Record], name: Pattern[str], what: str) -> str:
     """A sentence: data is old because the callback of a topic with such a name is too slow; empty if no callback is."""
     delays = [(delay, topic) for record in records.values() for topic, delay in record.delays if name.search(topic)]
     delays = [it for it in delays if it[0] >= MIN_DELAY]
-    return text("late", what, *reversed(max(delays))) if delays else ""
+    if not delays:
+        return ""
+    delay, topic = max(delays)
+    return (
+        f"{what}: messages on {topic} waited up to {delay:.3g} s for their callback, because it takes longer than the "
+        "time from one message to the next. It has to store what it needs and return at once, without a sleep or a "
+        "long calculation"
+    )
 
 
 def silent(record: Record, goal: Goal) -> bool:

@@ -18,8 +18,8 @@ from ..record import (
     samples_between,
     status_name,
 )
-from ..texts import sentences, text
-from .consequences import EXCEPTION, NO_RESULT, NOT_RESET, SUCCESS, logged_cause
+from ..texts import sentences
+from .consequences import EXCEPTION, NO_RESULT, NO_STATE, NOT_RESET, SUCCESS, logged_cause
 from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged
 from .topic_types import wrong_type
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
@@ -27,6 +27,17 @@ from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 TWO_STATES = "The goal got two terminal states"
 NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
 AT_ONCE = 0.3  # [s] a goal that ends within this time was not driven to
+UNNOTICED = (
+    "It was not noticed. Is the distance ahead checked in each iteration, is it that of the beams ahead, and does the "
+    "scan's callback return at once?"
+)
+TOO_FAR = (
+    f"The goal succeeds before position_error is below {GOAL_RADIUS:g} m: is the threshold another one, is another "
+    "quantity compared, or does something else end the goal?"
+)
+EMPTY_RESULT = (
+    "No result or an empty one was sent: fill in success and message, pass it to set_succeeded or set_aborted"
+)
 
 
 def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Optional[Failed]:
@@ -50,7 +61,7 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
             return replace(early, expected=status_name(wanted))
     cause = _wrong_state(record, goal, result.status, wanted)
     if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):  # odometry continued to advance
-        cause = wrong_type(record, "/scan") or narrow_obstacle(record) or text("collision_unnoticed")
+        cause = wrong_type(record, "/scan") or narrow_obstacle(record) or UNNOTICED
     state = status_name(result.status)
     seen = state + (f": {result.message}" if result.message else "")
     return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), state, goal)
@@ -68,7 +79,11 @@ def narrow_obstacle(record: Record) -> str:
     across = [outline[1::2] for outline in record.obstacles[:1]]
     if not across or max(across[0]) - min(across[0]) > NARROW:
         return ""
-    return text("narrow_obstacle", "left" if sum(across[0]) > 0.0 else "right")
+    side = "left" if sum(across[0]) > 0.0 else "right"
+    return (
+        f"A narrow obstacle a little to the {side} was missed or noticed too late, although a wall is noticed. Do the "
+        "beams on both sides of straight ahead count, and does the nearest of them decide?"
+    )
 
 
 def _collision(record: Record, goal: Goal, end: float) -> str:
@@ -83,17 +98,26 @@ def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
     if told:
         return told
     if status == PREEMPTED and not _asked_to_end(record, goal, end):
-        return sentences(text("preempted_unasked"), text("preempted_at_once") if _at_once(record, goal) else "")
+        return sentences(
+            "set_preempted is called although neither a cancel request nor a newer goal has come",
+            "Is is_preempt_requested() called, with its parentheses?" if _at_once(record, goal) else "",
+        )
     if wanted == ABORTED and status == SUCCEEDED:
-        return text("failure_as_success")
+        return "set_succeeded is called although the goal failed: call set_aborted"
     if wanted == SUCCEEDED and status == ABORTED:
         if not record.obstacles:
-            return text("abort_without_obstacle")
+            return (
+                "set_aborted is called although there is no obstacle at all: does the server have a timeout of "
+                "its own, or is a range of inf treated as an obstacle?"
+            )
         if any(result.time < goal.time and result.status == ABORTED for result in record.results):
-            return text("abort_again")
-        return text("abort_in_the_open")
+            return "set_aborted is called although nothing is in the way any more"
+        return (
+            "set_aborted is called although nothing is in the way: which beams count as ahead, or does the server"
+            " have a timeout of its own?"
+        )
     if wanted == PREEMPTED:
-        return text("preempted_expected")
+        return "Call set_preempted for a goal that is cancelled or replaced"
     return "The server set the wrong terminal state"
 
 
@@ -111,11 +135,11 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
     if nearest <= limits.reached:
         return None
     own = [it.position_error for it in feedback_of(record, goal) if it.time <= result.time]
-    kind, cause = SUCCESS, text("success_too_far", GOAL_RADIUS)
+    kind, cause = SUCCESS, TOO_FAR
     if own and own[-1] < GOAL_RADIUS:
-        cause = text("success_believed", own[-1])
+        cause = f"The server takes the robot to be at the goal: its own position_error is {own[-1]:.3f} m"
     if _at_once(record, goal) and any(_took_longer(record, it) for it in record.goals if it.time < goal.time):
-        kind, cause = NOT_RESET, text("not_reset")
+        kind, cause = NOT_RESET, "What an earlier goal has changed is not reset when a goal begins"
     seen = f"{SUCCESS} {nearest:.2f} m away"
     return Failed(f"success within {GOAL_RADIUS:g} m", seen, result.time, cause, kind, goal)
 
@@ -155,10 +179,10 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
         return NotReached(f"the goal did not end as {status_name(status)}")
     result = results[0]
     if result.success != success:
-        cause = text("contradicting_result" if result.message else "no_result_message")
+        cause = "result.success contradicts the terminal state" if result.message else EMPTY_RESULT
         return Failed(f"success {success}", f"success {result.success}", result.time, cause)
     if not result.message:
-        cause = logged_cause(record, result.time) or text("no_result_message")
+        cause = logged_cause(record, result.time) or EMPTY_RESULT
         return Failed("a message", EMPTY, result.time, cause, EMPTY)
     return PASSED
 
@@ -187,7 +211,16 @@ def keeps_moving(record: Record, result: Result, until: float) -> str:
     """Why a robot does not stop between a result and a time [s]: the last command, or further commands."""
     commands = [it for it in record.commands if result.time + AT_ONCE < it.time <= until]
     later = any((it.v, it.w) != (0.0, 0.0) for it in commands)
-    return text("commanded_later" if later else "keeps_moving", status_name(result.status))
+    state = status_name(result.status)
+    if later:
+        return (
+            f"The robot is still commanded to move after the result ({state}): does a loop, a timer or a thread go on? "
+            "Publish a zero Twist at every ending, and nothing after it"
+        )
+    return (
+        f"The robot kept moving after the result ({state}): publish a zero Twist at every ending, because the last "
+        "/cmd_vel stays in force"
+    )
 
 
 @check("states", after=(EXCEPTION,), needs=("reaches_goal",))
@@ -201,10 +234,13 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
         judged = judged or bool(results)
     for line in record.lines:
         if TWO_STATES_LOGGED.search(line.text):
-            cause = text("two_states_after_cancel")
+            cause = (
+                "The goal got two terminal states, as in the handout's example after a cancel: return at once "
+                "after set_succeeded(), set_aborted() and set_preempted()"
+            )
             return Failed("one terminal state", line.text[:160], line.time, cause, TWO_STATES)
         if NO_STATE_LOGGED.search(line.text):
-            return Failed("a terminal state", "none was set", line.time, text("no_terminal_state"))
+            return Failed("a terminal state", "none was set", line.time, NO_STATE)
     for goal in record.goals:
         changes = [change for change in record.statuses if change.id == goal.id and change.status in TERMINAL]
         if len({change.status for change in changes}) > 1:

@@ -9,22 +9,9 @@ import numpy as np
 
 from ..handout import GOAL_RADIUS, Limits
 from ..record import ERRORS, Goal, Record, active_until, errors_at, feedback_of, samples_between, wrapped
-from ..texts import text
 from .consequences import NOT_RESET, died, late, nothing_came, unpublished
-from .feedback_causes import (
-    ANGLE,
-    OF_POSITION,
-    OTHERWISE,
-    POSE_TOPIC,
-    POSITION,
-    TOLERANCES,
-    UNCHANGED,
-    UNITS,
-    Pair,
-    likely_cause,
-    longest,
-    misses,
-)
+from .feedback_causes import OTHERWISE, TOLERANCES, UNITS, likely_cause, longest, misses
+from .feedback_hypotheses import ANGLE, OF_POSITION, POSE_TOPIC, POSITION, UNCHANGED, Pair
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
@@ -40,6 +27,13 @@ MAX_DIFFERENCE = 0.2  # [m], [rad] that counts of a difference
 STEADY = 0.005  # [m], [rad] smaller changes of an error are none
 SHIFT = 0.015  # [m], [rad] larger constant differences are no inexactness of /odom
 MIN_GOAL_TIME = 1.0  # [s] shorter goals say nothing about a rate
+NO_FEEDBACK = "No feedback was sent at all: is publish_feedback called in the loop?"
+TOO_OFTEN = (
+    "Feedback is sent more often than 10 times a second: is rate.sleep() called in each iteration, that of "
+    "rospy.Rate(10), and is feedback published once in it?"
+)
+NOT_10_HZ = "Feedback is not sent in each iteration, or the loop's rate is not 10 Hz"
+DIFFERENCE = "the difference of two angles has to be normalized to -pi..pi"
 # Kinds of failures.
 WRONG_POSITION = "of the position"
 UNTRUE = "untrue"
@@ -59,10 +53,10 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
         rate = count / (end - goal.time)
         if limits.feedback_low <= rate <= limits.feedback_high:
             continue
-        cause = "no_feedback" if not count else "too_often" if rate > limits.feedback_high else "not_10_hz"
+        cause = NO_FEEDBACK if not count else TOO_OFTEN if rate > limits.feedback_high else NOT_10_HZ
         wanted = f"about 10 Hz ({limits.feedback_low:g} to {limits.feedback_high:g})"
         seen = f"{rate:.1f} Hz, {count} messages in {end - goal.time:.1f} s"
-        return Failed(wanted, seen, goal.time, text(cause), goal=goal)
+        return Failed(wanted, seen, goal.time, cause, goal=goal)
     return PASSED if judged else NotReached("no goal was active for a second")
 
 
@@ -109,8 +103,9 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
     cause, found = likely_cause(index, wrong, scenarios)
     silent = unpublished(records, POSE_TOPIC)
     if found & UNCHANGED and silent:
-        cause = text("pose_unpublished", silent)
-    elif of_old_pose and (found & UNCHANGED or cause == text(OTHERWISE[index])):
+        cause = f"The errors do not change with the robot's pose: the node subscribes to {silent}, which nobody "
+        cause += "publishes; the position comes from /odom"
+    elif of_old_pose and (found & UNCHANGED or cause == OTHERWISE[index]):
         cause = of_old_pose
     return replace(failure, cause=cause, kind=WRONG_POSITION if found & OF_POSITION else UNTRUE)
 
@@ -147,7 +142,8 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
     if unwrapped and len(unwrapped) > 0.7 * len(beyond):  # single values in degrees may match by chance
         message = unwrapped[0].feedback
         wanted, seen = "an angle within +-3.14 rad", f"angle_error {message.angle_error:.2f}"
-        return Failed(wanted, seen, message.time, text("not_wrapped", message.angle_error))
+        cause = f"angle_error is not wrapped: {message.angle_error:.1f} rad; {DIFFERENCE}"
+        return Failed(wanted, seen, message.time, cause)
     old = None if _old(record, POSITION) else _old(record, ANGLE)  # one mistake is counted once
     return _untrue(ANGLE, pairs, limits.angle_tolerance) or old or PASSED
 
@@ -163,7 +159,11 @@ def _old(record: Record, index: int) -> Optional[Failed]:
     if AGES[best] < OLD or means[best] > 0.5 * means[0] or _is_shifted(record, index):
         return None
     name, seen = ERRORS[index], f"one of {AGES[best]:.2f} s ago"
-    return Failed(f"the present {name}", seen, record.feedback[0].time, text("old_feedback", name), OLD_POSE)
+    cause = (
+        f"{name} in the feedback is old: calculate it from the newest pose, then publish the feedback, both in the "
+        "same iteration, and let callbacks return at once"
+    )
+    return Failed(f"the present {name}", seen, record.feedback[0].time, cause, OLD_POSE)
 
 
 def _is_shifted(record: Record, index: int) -> bool:

@@ -5,8 +5,8 @@ from typing import Sequence
 
 from ..handout import ACTION, ACTION_TYPE, Limits
 from ..record import Death, Record
-from ..texts import text
 from .output import TRACEBACK, UNCAUGHT, first_error, last_error
+from .topic_types import other_action
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 
 START = After("action_server", lambda record, *_: record.name == "start")
@@ -34,13 +34,17 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     if ACTION in record.servers:
         kind = record.types[record.servers.index(ACTION)]
         if kind != ACTION_TYPE:
-            return Failed(ACTION_TYPE, kind, 0.0, text("other_type", kind))
-        return Failed("a server that clients can connect to", "no connection", 0.0, text("other_fields"))
+            return Failed(ACTION_TYPE, kind, 0.0, other_action(kind))
+        cause = (
+            "The fields of GoToPosition.action differ from the handout's, or the server was not started "
+            "(auto_start=False needs server.start())"
+        )
+        return Failed("a server that clients can connect to", "no connection", 0.0, cause)
     servers = [server.lstrip("/") for server in record.servers]
     if servers:
         close = closest(name, servers) or servers[0]
-        return Failed(name, close, 0.0, text("other_server", close, name))
-    cause = text("no_server")
+        return Failed(name, close, 0.0, f"The action server is called {close}; the handout says {name}")
+    cause = "No action server was created, or it was not started (server.start())"
     if isinstance(no_exception(record, limits), Failed):
         cause = f"An exception while starting: {last_error(record)}"
     return Failed(name, "no action server", 0.0, cause)

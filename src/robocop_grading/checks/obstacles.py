@@ -18,7 +18,7 @@ from ..record import (
     results_of,
     samples_between,
 )
-from ..texts import sentences, text
+from ..texts import sentences
 from .consequences import AT_FIRST, ENDING, MOVES_FIRST, NO_RESULT, SUCCESS, TOO_EARLY, late, logged_cause, unpublished
 from .endings import MOVING, keeps_moving, narrow_obstacle, of_goals, wrong_ending
 from .output import EXCEPTION_LOGGED, logged
@@ -27,6 +27,15 @@ from .verdict import PASSED, After, Failed, NotReached, Verdict, check
 SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
 PAST = 0.5  # share of the way to a goal beside obstacles after which the robot has passed some
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
+ABORTED_FAR = (
+    f"The goal was aborted farther than {STOP_DISTANCE:g} m from the obstacle: is the threshold another one, do beams "
+    "count that are not ahead, or does something else abort the goal?"
+)
+ABORTED_LATER = "and the goal was aborted only when it had moved away again: abort it at once"
+ABORTED_NEAR = (
+    f"The goal was aborted nearer than {STOP_DISTANCE:g} m to the obstacle: is the threshold another one, is the "
+    "newest scan used in each iteration, and are the beams that count those ahead?"
+)
 
 
 STANDS = After("stands_at_end", kind=MOVING)
@@ -37,7 +46,8 @@ def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Fa
     silent = unpublished(records, SCAN_TOPIC)
     unnoticed = failure.kind in (STATUS_NAMES[SUCCEEDED], SUCCESS, NO_RESULT, MOVES_FIRST)
     if silent and unnoticed:
-        return replace(failure, cause=text("scan_unpublished", silent))
+        cause = f"The node subscribes to {silent}, which nobody publishes; the laser's topic is /scan"
+        return replace(failure, cause=cause)
     of_old_scan = late(records, SCAN_TOPIC, "The distance ahead is that of an old scan")
     return replace(failure, cause=of_old_scan) if of_old_scan and (unnoticed or not failure.kind) else failure
 
@@ -67,9 +77,9 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
     clearances = [sample.ahead for sample in samples_between(record, end - 0.25, end)]
     if clearances and min(clearances) > limits.abort_farthest:
         nearest = min(sample.ahead for sample in samples_between(record, goal.time, end))
-        cause, kind = text("aborted_far", STOP_DISTANCE), TOO_EARLY
+        cause, kind = ABORTED_FAR, TOO_EARLY
         if nearest <= limits.abort_farthest:
-            cause, kind = text("aborted_later", nearest), ""
+            cause, kind = f"The robot came as near as {nearest:.2f} m to the obstacle, {ABORTED_LATER}", ""
         return Failed(wanted, f"an abort at {min(clearances):.2f} m", end, cause, kind, goal)
     if clearances and clearances[-1] < limits.abort_nearest:
         cause = narrow_obstacle(record) or _late_cause(record, goal, end, clearances[-1])
@@ -86,8 +96,11 @@ def _late_cause(record: Record, goal: Goal, end: float, clearance: float) -> str
     there = samples_between(record, goal.time, end)
     angles = [own[-1].angle_error, errors_at(there[-1], goal)[1]] if own and there else [0.0]
     if all(abs(angle) > HEADING_TOLERANCE for angle in angles):  # it was about to turn
-        return text("aborted_while_turning", STOP_DISTANCE, clearance)
-    return text("aborted_near", STOP_DISTANCE)
+        return (
+            f"The robot drove on from {STOP_DISTANCE:g} to {clearance:.2f} m from the obstacle, and the goal was "
+            "aborted only when it turned: is the distance checked while it drives, too?"
+        )
+    return ABORTED_NEAR
 
 
 def _approach(record: Record, goal: Goal) -> Optional[Failed]:
@@ -98,7 +111,10 @@ def _approach(record: Record, goal: Goal) -> Optional[Failed]:
     if not before or before[-1] >= STOP_DISTANCE - MARGIN or nearest >= before[-1] - MARGIN:
         return None
     wanted, seen = f"an abort at {before[-1]:.2f} m", f"{nearest:.2f} m ahead of it"
-    cause = text("towards_obstacle", before[-1], STOP_DISTANCE)
+    cause = (
+        f"The robot drove towards an obstacle that was {before[-1]:.2f} m ahead from the start: is the threshold "
+        f"less than {STOP_DISTANCE:g} m, or is the distance not checked before the robot drives?"
+    )
     return Failed(wanted, seen, goal.time, cause, MOVES_FIRST, goal)
 
 
@@ -135,7 +151,8 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
         return problem
     hint = ""
     if problem.kind in (STATUS_NAMES[ABORTED], TOO_EARLY):
-        hint = text("odd_range_as_obstacle")
+        hint = "A range of 0 or NaN is treated as an obstacle"
     elif wanted == ABORTED and problem.kind in (STATUS_NAMES[SUCCEEDED], NO_RESULT, SUCCESS):
-        hint = text("odd_range_hides")
-    return replace(problem, cause=sentences(problem.cause, hint and text("valid_range", hint)))
+        hint = "A range of 0 or NaN hides the wall"
+    hint = hint and f"{hint}: only range_min < r < range_max is a valid range"
+    return replace(problem, cause=sentences(problem.cause, hint))

@@ -6,7 +6,7 @@ import re
 from typing import Iterator, Pattern, Sequence
 
 from ..record import Record
-from ..texts import sentences, text
+from ..texts import sentences
 
 # How a line at a level begins: as the recording writes /rosout, or as rospy writes it to a terminal.
 _WARNING = r"^(?:\x1b\[[\d;]*m)*\[ *(?:WARN|WARNING|ERROR)\] ?(?:\[[\d., ]+\]:? ?)?"
@@ -30,6 +30,7 @@ LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/|/robocop
 FOLDER = re.compile(r"(?<=in file ).*/([^/]+ on line \d)")  # in Python's words for a file that is not UTF-8
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 UNKNOWN_TYPE = re.compile("Type .{1,100} if not loaded or supported")  # in tf2's words
+NOT_IMPORTED = "tf2 can transform messages of geometry_msgs only after: import tf2_geometry_msgs"
 DELAY = 0.25  # [s] after which a line has been read
 TRACEBACK = 40  # lines before the error in which its place is looked for
 
@@ -59,7 +60,7 @@ def last_error(record: Record, until: float = math.inf) -> str:
             place = _place(lines[max(0, number - TRACEBACK) : number], only_own)
             if place or not only_own:
                 error = FOLDER.sub(r"\1", lines[number])[:200] + place
-                return sentences(error, text("tf2_types")) if UNKNOWN_TYPE.search(error) else error
+                return sentences(error, NOT_IMPORTED) if UNKNOWN_TYPE.search(error) else error
     others = [line for line in lines if not INFORMATION.match(line)]
     if not others:
         return "its output names no error"

@@ -5,7 +5,7 @@ from typing import Optional
 
 from ..handout import Limits
 from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, feedback_of, results_of, samples_between, status_name
-from ..texts import sentences, text
+from ..texts import sentences
 from .consequences import ENDING, LATE, NOT_RESET, alike, nothing_came
 from .endings import success_too_far, wrong_ending
 from .output import EXCEPTION_LOGGED, logged
@@ -16,6 +16,11 @@ MOSTLY = 0.7
 ENDS = 0.3  # [s] in which the robot stops
 SILENT = 1.0  # [s] after which feedback, if it goes on, has come
 NO_ANSWER = "no answer"
+IN_EACH = "is is_preempt_requested() called in each iteration"
+NOTHING_COMES = (
+    "neither feedback nor a result of the goal comes: is set_preempted() called for it, or does a callback wait for "
+    "something, such as the end of a thread, that itself waits for the callback?"
+)
 PREEMPTION = *ENDING, After("reaches_goal", nothing_came), After("cancel", alike)
 
 
@@ -26,7 +31,8 @@ def cancel(record: Record, limits: Limits) -> Verdict:
         return NotReached("the goal ended before it could be cancelled")
     request = record.cancels[0]
     goal = next(goal for goal in record.goals if goal.id == request.id)
-    return _preempted(record, goal, request.time, limits, "cancel request", text("check_preempt")) or PASSED
+    hint = f"{IN_EACH}?"
+    return _preempted(record, goal, request.time, limits, "cancel request", hint) or PASSED
 
 
 @check("states", after=(*PREEMPTION, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))
@@ -35,7 +41,8 @@ def newer_goal(record: Record, limits: Limits) -> Verdict:
     if len(record.goals) < 2:
         return NotReached("the first goal ended before a newer one could be sent")
     older, newer = record.goals[:2]
-    problem = _preempted(record, older, newer.time, limits, "newer goal", text("check_newer_goal"))
+    hint = "is_preempt_requested() is true for a newer goal as well, and the loop has to end then"
+    problem = _preempted(record, older, newer.time, limits, "newer goal", hint)
     return problem or wrong_ending(record, newer, SUCCEEDED, limits) or PASSED
 
 
@@ -49,7 +56,8 @@ def _preempted(
         return Failed(wanted, seen, requested, _unnoticed(record, goal, requested, request, hint), LATE, goal)
     if results[0].status in (PREEMPTED, RECALLED):
         if results[0].success:
-            return Failed("success False", "success True", results[0].time, text("success_at_preempt"))
+            cause = "result.success is true although the goal was not reached"
+            return Failed("success False", "success True", results[0].time, cause)
         return None
     return wrong_ending(record, goal, PREEMPTED, limits)
 
@@ -60,18 +68,23 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
     if not results or results[0].status not in (PREEMPTED, RECALLED):
         times = [feedback.time for feedback in feedback_of(record, goal)]
         if times and not results and times[-1] < requested + SILENT:
-            return text("nothing_after_request", request)
+            return f"After the {request} {NOTHING_COMES}"
         return f"The {request} is not noticed: {hint}"
     own = feedback_of(record, goal)
     if own and own[-1].time < requested + SILENT and _begins_other(record, goal, requested, results[0].time):
-        return text("result_late", request, results[0].time - requested)
+        return (
+            f"The {request} is noticed at once, but the older goal's result comes "
+            f"{results[0].time - requested:.1f} s later: set its terminal state as soon as it no longer runs"
+        )
     late = f"The {request} is noticed only {results[0].time - requested:.1f} s later"
     waiting = samples_between(record, requested, results[0].time - ENDS)
     turning = sum(abs(sample.w) > TURNING and abs(sample.v) < MOVING for sample in waiting)
     driving = sum(abs(sample.v) >= MOVING for sample in waiting)
     if turning > MOSTLY * len(waiting):
-        return text("noticed_after_turn", late)
-    return text("noticed_after_drive" if driving > MOSTLY * len(waiting) else "waits_before_ending", late)
+        return f"{late}, when the robot has turned: {IN_EACH}, also while it turns?"
+    if driving > MOSTLY * len(waiting):
+        return f"{late}, and the robot drives on until then: {IN_EACH}, also while it drives?"
+    return f"{late}: {IN_EACH}, and does nothing else make the callback wait before it ends the goal?"
 
 
 def _begins_other(record: Record, goal: Goal, requested: float, end: float) -> bool:
@@ -101,4 +114,5 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
     if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind == NOT_RESET:
         return problem
     before = status_name(results_of(record, record.goals[-2])[0].status)
-    return replace(problem, cause=sentences(problem.cause, text("next_goal_fails", before)))
+    hint = f"The next goal fails after the one before it ended as {before}: is all state that a goal changes reset?"
+    return replace(problem, cause=sentences(problem.cause, hint))

@@ -4,7 +4,11 @@ import re
 
 from ..handout import ACTION, ACTION_TYPE
 from ..record import Record
-from ..texts import text
+
+
+def other_action(found: str) -> str:
+    """What is wrong with an action of another type than the handout's."""
+    return f"The action's type is {found}; the handout's is GoToPositionAction of aro_robocop_goto_as"
 
 
 def wrong_type(record: Record, *topics: str) -> str:
@@ -13,8 +17,8 @@ def wrong_type(record: Record, *topics: str) -> str:
         if topic in topics:
             action = re.sub("(Goal|Result|Feedback)$", "", found)
             if topic.startswith(f"{ACTION}/") and action != found and action != ACTION_TYPE:
-                return text("other_type", action)
-            return (
-                text("wrong_fields", topic, found) if found == expected else text("wrong_type", topic, found, expected)
-            )
+                return other_action(action)
+            if found == expected:
+                return f"{topic} is used with the type {found}, but with other fields than its own"
+            return f"{topic} is used with the wrong type, {found}; its type is {expected}"
     return ""

@@ -6,7 +6,6 @@ from typing import Iterator, List, NamedTuple, Optional, Sequence
 
 from ..handout import HEADING_TOLERANCE, Limits
 from ..record import Command, Goal, Record, active_until, errors_at, samples_between
-from ..texts import text
 from .consequences import AT_FIRST, EXCEPTION, MISLED, MOVES_FIRST, died_before, nothing_came
 from .topic_types import wrong_type
 from .verdict import PASSED, After, Failed, NotReached, Verdict, check
@@ -84,7 +83,11 @@ def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], li
     if first is None or abs(first.v) <= limits.driving or not 0 < at_first < len(driving) or any(driving[at_first:]):
         return None
     seen = f"linear.x {first.v:.2f} at {situations[0].angle:.2f} rad"
-    return Failed(NOT_DRIVING, seen, first.time, text("moves_first"), MOVES_FIRST)
+    cause = (
+        "The robot drives when the goal comes, and turns only then: calculate the errors first, and let them decide "
+        "what it does"
+    )
+    return Failed(NOT_DRIVING, seen, first.time, cause, MOVES_FIRST)
 
 
 def _aligned_before(record: Record, goal: Goal, limits: Limits) -> float:
@@ -97,24 +100,35 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
     driving = [it for it in situations if abs(it.command.v) > limits.driving]
     if len(driving) > MAX_WRONG * len(situations):
         command, angle = driving[0]
-        cause = text("drives_while_turning")
+        cause = "The robot drives while it turns; the handout wants one or the other"
         if sum(abs(it.command.w) < 1e-3 for it in driving) > 0.5 * len(driving):
-            cause = text("no_correction" if command.time > aligned else "drives_straight_at", angle, TURN)
+            cause = (
+                f"Once it has turned to the goal, the robot drives on at {angle:.2f} rad without turning again: "
+                f"compare angle_error with {TURN} in each iteration, because the heading changes while it drives"
+                if command.time > aligned
+                else f"The robot drives straight at {angle:.2f} rad: is the threshold of angle_error {TURN}, and is it "
+                "compared in each iteration?"
+            )
         seen = f"linear.x {command.v:.2f} at {angle:.2f} rad"
         return Failed(NOT_DRIVING, seen, command.time, cause)
     still = [it for it in situations if abs(it.command.w) < 1e-3]
     if len(still) > 0.5 * len(situations):
         command, angle = still[0]
-        cause = text("never_turned", angle, "angular.z stayed 0")
+        cause = f"The robot never turned: angle_error is {angle:.2f} rad but angular.z stayed 0"
         if len(still) < len(situations):
-            cause = text("stands_before_turn", angle)
+            cause = f"The robot stands for some time although angle_error is {angle:.2f} rad: angular.z is 0"
         return Failed("angular.z towards the goal", "angular.z 0", command.time, cause)
     wrong = [it for it in situations if it.command.w * it.angle < 0.0]
     away = [it for it in wrong if abs(it.angle) < math.pi - 0.2]  # beyond, a right command may be of the other side
     if len(away) > 0.15 * len(situations) or len(wrong) > 0.5 * len(situations):
         command, angle = (away or wrong)[0]
         wanted = "angular.z above 0" if angle > 0 else "angular.z below 0"
-        cause = text("turns_away_behind" if abs(angle) > math.pi / 2.0 else "turns_away", angle)
+        goal, turn = "the goal", " for the shorter turn"
+        if abs(angle) > math.pi / 2.0:
+            goal, turn = "a goal that is behind it", ", also for large angles"
+        cause = (
+            f"The robot turns away from {goal}: angle_error is {angle:.2f} rad, so angular.z needs the same sign{turn}"
+        )
         return Failed(wanted, f"angular.z {command.w:.2f}", command.time, cause)
     return None
 
@@ -129,7 +143,7 @@ def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed
     commands = [command for command in record.commands if goal.time <= command.time <= end]
     if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
         reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
-        cause = wrong_type(record, "/cmd_vel") or text("never_turned", angle, reason)
+        cause = wrong_type(record, "/cmd_vel") or f"The robot never turned: angle_error is {angle:.2f} rad but {reason}"
         return Failed("angular.z towards the goal", "no command to turn", goal.time, cause, "unturned")
     return None
 
@@ -158,8 +172,8 @@ def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> 
     backward = [it for it in driving if it.command.v < 0.0]
     standing = [it for it in aligned if abs(it.command.v) <= 1e-3]
     for wrong, situations, seen, cause in (
-        (backward, driving, "below 0", text("drives_backward")),
-        (standing, aligned, "0", text("stands", TURN)),
+        (backward, driving, "below 0", "The robot drives backward: linear.x has to be positive"),
+        (standing, aligned, "0", f"The robot heads for the goal but does not drive: linear.x is 0 within {TURN}"),
     ):
         if len(situations) >= ENOUGH and len(wrong) > 0.3 * len(situations):
             command, angle = wrong[0]
@@ -179,4 +193,5 @@ def _curves(driving: Sequence[Situation], limits: Limits) -> Optional[Failed]:
         return None
     command, angle = curves[0]
     seen = f"angular.z {command.w:.2f} at {angle:.2f} rad"
-    return Failed("angular.z near 0", seen, command.time, text("curves"))
+    cause = "The robot keeps turning while it drives: driving straight means angular.z = 0"
+    return Failed("angular.z near 0", seen, command.time, cause)

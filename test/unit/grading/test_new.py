@@ -73,6 +73,6 @@ def test_zip_has_what_an_installation_needs(tmp_path):
         names = set(archive.namelist())
         executable = archive.getinfo("run_autograder").external_attr >> 16 & 0o111
     assert {"setup.sh", "run_autograder", "robocop/robocop", "robocop/package.xml"} <= names
-    assert {"robocop/config/grading_texts.yaml", "robocop/src/robocop_grading/agent/clock.py"} <= names
+    assert {"robocop/config/grading.yaml", "robocop/src/robocop_grading/agent/clock.py"} <= names
     assert not any("__pycache__" in name for name in names)
     assert executable
