@@ -11,10 +11,9 @@ From a velocity command to odometry, scan, tf and clock:
         kinematic.c, pybullet     wheel speeds + world -> poses, velocities, wheel angles of the fleet
     simulation.agenda             the sensors that are due and subscribed to, and the calls that measure them
         sensors.catalog           the list of the sensors; each is a module with its parameters and its measurement
-    simulation.observations       what the sensors have measured
     ros.sim.node                  the loop of simulation.running: has the simulator advance, publishes what it measured
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
-        ros.sim.sensor_topics     at the start: each sensor's topic, and its packed message, bound to a robot's row
+        ros.sim.sensor_messages   at the start: each sensor's topic, and its packed message, bound to a robot's row
         ros.publishing.batch      the batch: batch.c copies these rows into the packed messages and sends them
 
     rospy serializes the other topics (bumper, camera).
@@ -32,9 +31,9 @@ From a goal to its result:
 From a world file to a scan:
 
     world.load                    by world.sdf or world.grid_map -> world.model.World
-    raycast.cross_section         the world at a scanner's height: segments and circles
-    raycast.scanners              + robot poses -> exact distances along all beams
-        raycast.beams             lays these out as a Scene for caster.c, which caster_library loads, and calls it
+    raycast.cross_section         the world at a sensor's height: segments and circles
+    raycast.sections              + robots and where on them the sensor is -> what its beams can hit
+        raycast.beams             lays this out for caster.c, which caster_library loads: exact distances along beams
     sensors.lidar                 noise, range limits -> ranges
 
 From the system to a browser and back, by viser:

@@ -148,7 +148,7 @@ class SimParams:
         return problems
 
     def _range_conflicts(self) -> List[str]:
-        lidar, camera = self.sensors.scan.lidar(), self.sensors.camera
+        lidar, camera = self.sensors.lidar.profile(), self.sensors.camera
         return [
             f"{high_name}: expected more than {low_name} {low}, got {high}"
             for low_name, low, high_name, high in (

@@ -138,7 +138,8 @@ def test_exit_status_is_1_when_the_simulator_refuses_its_arguments(hosted):
 
 
 MANIFEST = """<package format="2"><name>{}</name><version>0.0.1</version><description>d</description>
-<maintainer email="a@example.com">m</maintainer><license>BSD</license><buildtool_depend>catkin</buildtool_depend>{}</package>"""
+<maintainer email="a@example.com">m</maintainer><license>BSD</license><buildtool_depend>catkin</buildtool_depend>{}
+</package>"""
 WORKSPACE = {
     "drive/package.xml": MANIFEST.format("drive", "<depend>rospy</depend><depend>drive_msgs</depend>"),
     "drive/CMakeLists.txt": "cmake_minimum_required(VERSION 3.10)\nproject(drive)\n"
@@ -159,11 +160,12 @@ def test_node_with_its_neighbours_messages_ends_and_is_named_below_the_overview(
     for name, text in WORKSPACE.items():
         (tmp_path / "ws" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "ws" / name).write_text(text)
+    script = tmp_path / "ws" / "drive" / "scripts" / "drive.py"
+    script.chmod(0o755)
     with Hosted(tmp_path / "ws", tmp_path) as system:
         system.wait_until(lambda: "drive has ended" in system.output, "the end of a node")
         assert running_node(system.uri, "/gripper"), system.output
         above, _, below = system.output.partition("all messages  appear below\n")
-        script = tmp_path / "ws" / "drive" / "scripts" / "drive.py"
         assert f"drive has ended: ValueError: length: 1.5 ({script}, line 3)" in below
         assert f'File "{script}", line 3' in above and "process has died" not in above
         assert "launch/drive.launch, line 3: there is no a of the package no_such_package on this machine" in above

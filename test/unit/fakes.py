@@ -3,14 +3,14 @@
 import queue
 from typing import AbstractSet, Callable, List, Set, Tuple
 
-from support import ORIGIN, kept, model_named, world_named
+from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.agenda import Due
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.jobs import Clock, Job, Queue
 from aro_robocop_goto_as.simulation.lockstep import ControllerId
-from aro_robocop_goto_as.simulation.observations import Observations
 from aro_robocop_goto_as.simulation.running import Simulation
 
 
@@ -49,7 +49,7 @@ class Owner:
         self.simulator = make_simulator(p, world_named("empty"), [RobotSpec("", model_named("burger"), ORIGIN)])
         self.clock, self.end = FakeClock(), end
         self.nodes: Set[str] = set()  # that are connected to the robot's topics
-        self.observed: List[Observations] = []
+        self.seen: List[Tuple[int, Due]] = []  # stamp [ns] and what was due
         self.events: List[object] = []
         self.on_tick: Callable[[int], object] = lambda stamp_ns: None  # called at each control tick
         self.is_stopped: Callable[[], bool] = lambda: self.simulator.time >= self.end
@@ -64,18 +64,18 @@ class Owner:
         time.pacer.restart(simulator.steps)
         self._pace()
         while not self.is_stopped():
-            seen = simulator.advance({"odom": [0]}, time.steps_left(simulator.steps))
-            if seen is not None:
-                self.observed.append(kept(seen))
-                if seen.due.control:
-                    self.on_tick(seen.stamp_ns)
-                if seen.due.control and controllers.in_lockstep:
+            due = simulator.advance({"odom": [0]}, time.steps_left(simulator.steps))
+            if due is not None:
+                self.seen.append((simulator.stamp_ns, due))
+                if due.control:
+                    self.on_tick(simulator.stamp_ns)
+                if due.control and controllers.in_lockstep:
                     controllers.begin_tick(self._connected)
                     self._hold(lambda: controllers.hold(self._connected))
                     report = controllers.end_tick()
                     self.events += [("late", report.late)] if report.late else []
                     self.events += [("gone", controller) for controller in report.gone]
-            if time.end_span(simulator.steps) or (seen is not None and seen.due.clock):
+            if time.end_span(simulator.steps) or (due is not None and due.clock):
                 self._pace()
 
     def _pace(self) -> None:

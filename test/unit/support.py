@@ -1,6 +1,5 @@
 """Shared by the unit tests: the package's folders, a ready simulator, an analytic ray cast."""
 
-import copy
 import functools
 import math
 import os
@@ -14,8 +13,8 @@ from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotModel, RobotSpec
 from aro_robocop_goto_as.shapes import Box, Cylinder
 from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.agenda import Due
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.observations import Observations
 from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.load import find_world, load_world
 from aro_robocop_goto_as.world.model import World
@@ -55,35 +54,27 @@ def simulator() -> Iterator[Callable[..., Simulator]]:
         one.close()
 
 
-SENSORS = ("scan", "odom", "tf", "joints", "imu", "ground_truth", "bumper", "camera")
+def everything(sim: Simulator) -> Dict[str, Sequence[int]]:
+    """Subscriptions to all sensors of all robots."""
+    return {topic: range(len(sim.robots)) for topic in sim.sensors.by_topic}
 
 
-def everything(robots: int) -> Dict[str, Sequence[int]]:
-    """Subscriptions to all sensors of so many robots."""
-    return {sensor: range(robots) for sensor in SENSORS}
+def drive(sim: Simulator, twist: Twist2D, seconds: float, topics: Iterable[str] = (), robot: int = 0) -> Iterator[Due]:
+    """Command a robot's velocity at each step for a time [s]; what is due of these sensors of all robots, at its step.
 
-
-def drive(
-    sim: Simulator, twist: Twist2D, seconds: float, sensors: Iterable[str] = (), robot: int = 0
-) -> List[Observations]:
-    """Command a robot's velocity at each step for a time [s]; what was observed by these sensors of all robots."""
-    subscriptions = {sensor: range(len(sim.robots)) for sensor in sensors}
-    seen: List[Observations] = []
+    Nothing moves but while what this returns is iterated over.
+    """
+    subscriptions = {topic: range(len(sim.robots)) for topic in topics}
     for _ in range(round(seconds * sim.rate)):
         sim.command(twist, robot)
-        observed = sim.step(subscriptions)
-        seen += [] if observed is None else [kept(observed)]
-    return seen
+        due = sim.advance(subscriptions)
+        if due is not None:
+            yield due
 
 
-def kept(observed: Observations) -> Observations:
-    """A copy of what the simulator changes in place with its next step, but for its fleet and its odometry."""
-    kept = copy.copy(observed)
-    kept.scan, kept.imu, kept.bumper, kept.camera = map(
-        copy.copy, (observed.scan, observed.imu, observed.bumper, observed.camera)
-    )
-    kept.scan.ranges, kept.imu.samples = observed.scan.ranges.copy(), observed.imu.samples.copy()
-    return kept
+def driven(sim: Simulator, twist: Twist2D, seconds: float, topics: Iterable[str] = (), robot: int = 0) -> List[Due]:
+    """What drive() yields, once all of it is over."""
+    return list(drive(sim, twist, seconds, topics, robot))
 
 
 def analytic_distances(world: World, x: float, y: float, angles: np.ndarray, far: float) -> np.ndarray:

@@ -6,7 +6,7 @@ from typing import Any, Callable, Dict
 import numpy as np
 import pytest
 import yaml
-from support import ROOT, drive, everything, model_named
+from support import ROOT, drive, driven, everything, model_named
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D
 from aro_robocop_goto_as.param_loading import from_dict
@@ -45,7 +45,7 @@ def test_a_profile_sets_limits_and_command_timeout(profile: str, model: str, exp
 
 def test_turtlebot3_gazebo_profile_has_its_scanner_localization_and_cameras() -> None:
     p = _params("turtlebot3_gazebo")
-    lidar = p.sensors.scan.lidar()
+    lidar = p.sensors.lidar.profile()
     assert (lidar.rate, lidar.samples, lidar.range_min, lidar.range_max) == (5, 360, 0.12, 3.5)
     assert (p.topics.localization, p.topics.has_initialpose, p.topics.gazebo_topics) == ("none", False, True)
     cameras = [p.sensors.camera.spec(f"turtlebot3_{name}") for name in ("waffle", "waffle_pi", "burger_rgbd")]
@@ -60,27 +60,29 @@ def test_turtlebot3_gazebo_profile_has_its_scanner_localization_and_cameras() ->
 
 def test_turtlebot3_gazebo_profile_runs(simulator: Make) -> None:
     sim = simulator("stage_1", Pose2D(0.5, 0.0), **_profile("turtlebot3_gazebo"))
-    seen = drive(sim, STANDSTILL, 1.0, everything(1))
-    samples = [observed.imu.samples[0, FORCE] for observed in seen if observed.of("imu")]
+    samples, scans = [], []
+    for due in drive(sim, STANDSTILL, 1.0, everything(sim)):
+        samples += [sim.sensors.imu.samples[0, FORCE].copy()] if due.of("imu") else []
+        scans += [sim.sensors.lidar.ranges[0].copy()] if due.of("scan") else []
     assert len(samples) == 240
     assert np.mean(samples, axis=0) == pytest.approx([0.1, 0.1, 9.90665], abs=0.01)
-    scans = [observed.scan.ranges[0] for observed in seen if observed.of("scan")]
     assert len(scans) == 5 and not np.isinf(scans[0]).any()
 
 
 def test_real_profile_has_an_lds01_and_the_rates_of_a_turtlebot3(simulator: Make) -> None:
-    assert _params("real").sensors.scan.lidar().range_max == 3.5
+    assert _params("real").sensors.lidar.profile().range_max == 3.5
     assert _params("real").topics.covariances == "real"
-    seen = drive(simulator("stage_1", **_profile("real")), STANDSTILL, 1.0, everything(1))
-    expected = dict(scan=5, odom=30, joints=30, imu=200, bumper=0)
-    assert {name: sum(bool(observed.of(name)) for observed in seen) for name in expected} == expected
+    sim = simulator("stage_1", **_profile("real"))
+    seen = driven(sim, STANDSTILL, 1.0, everything(sim))
+    expected = dict(scan=5, odom=30, joint_states=30, imu=200, bumper=0)
+    assert {topic: sum(bool(due.of(topic)) for due in seen) for topic in expected} == expected
 
 
 def test_the_real_profiles_encoders_count_ticks(simulator: Make) -> None:
     sim = simulator("empty", **_profile("real"))
-    seen = drive(sim, Twist2D(0.1, 0.5), 1.0, ["joints", "odom"])
-    angles = seen[-1].joints.angles[0] / TICK
+    driven(sim, Twist2D(0.1, 0.5), 1.0, ["joint_states", "odom"])
+    angles = sim.sensors.joints.angles[0] / TICK
     assert angles == pytest.approx(np.round(angles), abs=1e-6) and angles.all()
     half = sim.fleet.wheels[0, 0] * TICK / 2.0 * 30.0  # [m/s] one tick of one wheel between two updates
-    speed = seen[-1].odometry.twists[0, 0] / half
+    speed = sim.sensors.odometry.twists[0, 0] / half
     assert speed == pytest.approx(round(speed), abs=1e-6)

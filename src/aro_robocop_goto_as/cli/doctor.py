@@ -19,7 +19,7 @@ SETTINGS = ("ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "ROS_HOME")
 OPTIONAL_LISTS = ("rviz", "gui", "hosting", "grade", "class", "test")  # in install/deb-packages/
 # What neither ROS in /opt/ros, which is not installed by ./robocop, nor the system may lack.
 MODULES = (
-    "rospy actionlib tf2_ros tf2_geometry_msgs nav_msgs sensor_msgs diagnostic_msgs visualization_msgs std_srvs"
+    "rospy actionlib tf2_ros tf2_geometry_msgs nav_msgs sensor_msgs visualization_msgs std_srvs"
     " catkin_pkg numpy lxml collada PIL yaml ensurepip"
 ).split()
 FIND = "import sys, importlib.util as u\nprint(*[m for m in sys.argv[1:] if not u.find_spec(m)])"

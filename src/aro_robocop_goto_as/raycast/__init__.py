@@ -1,1 +1,1 @@
-"""Exact distances from scanners to the world along their beams."""
+"""Exact distances from sensors to the world along their beams."""

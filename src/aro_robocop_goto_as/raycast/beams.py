@@ -1,4 +1,4 @@
-"""Exact distances along a fan of evenly spaced beams, for any number of scanners at once."""
+"""Exact distances along a fan of evenly spaced beams, for any number of sensors at once."""
 
 import ctypes
 import math
@@ -8,21 +8,21 @@ from typing import Callable, Sequence
 import numpy as np
 
 from ..compiled import address
-from .caster_library import FanStruct, ScanPlaneStruct, SceneStruct, load
+from .caster_library import BeamPlaneStruct, BeamSceneStruct, BeamsStruct, load
 from .cross_section import NO_CIRCLES, CrossSection
 
 TOLERANCE = 1e-9  # [rad] as in caster.c
 NO_OWNERS = np.zeros(0, np.int64)
 
 
-class ScanPlane:
-    """What scanners at one height see: a world's cross-section and circles fixed to robots."""
+class BeamPlane:
+    """What sensors at one height see: a world's cross-section and circles fixed to robots."""
 
     def __init__(self, section: CrossSection, bodies: np.ndarray = NO_CIRCLES, owners: np.ndarray = NO_OWNERS) -> None:
         """Bodies (b, [x, y, radius]) [m], each in the frame of the robot that owners (b,) names by its index."""
         self.section, self.bodies, self.owners = section, bodies, owners
         self._tiles, self._moved_bodies = section.tiles, np.empty_like(bodies)  # the structure points to them
-        self.struct = ScanPlaneStruct(
+        self.struct = BeamPlaneStruct(
             len(section.segments),
             len(section.circles),
             len(bodies),
@@ -35,13 +35,13 @@ class ScanPlane:
         )
 
 
-class Scene:
-    """Robots with a scanner each, and what each scanner sees."""
+class BeamScene:
+    """Robots with a sensor each, and what each sensor sees."""
 
     def __init__(
-        self, planes: Sequence[ScanPlane], plane_of: Sequence[int], mounts: np.ndarray, footprints: np.ndarray
+        self, planes: Sequence[BeamPlane], plane_of: Sequence[int], mounts: np.ndarray, footprints: np.ndarray
     ) -> None:
-        """Robot i's scanner is at `mounts[i]` [x m, y m, yaw rad] in the robot's frame, in the plane `plane_of[i]`.
+        """Robot i's sensor is at `mounts[i]` [x m, y m, yaw rad] in the robot's frame, in the plane `plane_of[i]`.
 
         footprints: (n, 3) [x m, y m, yaw rad] in the world, where the robots are at each scan
         """
@@ -49,8 +49,8 @@ class Scene:
         count = len(self._plane_of)
         self.footprints, self._mounts = footprints, mounts
         self._planes = list(planes)
-        self._plane_structs = (ScanPlaneStruct * len(planes))(*(plane.struct for plane in planes))
-        struct = SceneStruct(
+        self._plane_structs = (BeamPlaneStruct * len(planes))(*(plane.struct for plane in planes))
+        struct = BeamSceneStruct(
             count,
             len(planes),
             address("footprints", self.footprints, (count, 3)),
@@ -64,8 +64,8 @@ class Scene:
         return len(self._plane_of)
 
 
-class Fan:
-    """Beams at angle_min + i * increment [rad] in the scanner's frame, i from 0 to samples - 1; increment > 0."""
+class Beams:
+    """Beams at angle_min + i * increment [rad] in the sensor's frame, i from 0 to samples - 1; increment > 0."""
 
     def __init__(self, angle_min: float, increment: float, samples: int) -> None:
         self.angle_min = angle_min
@@ -74,7 +74,7 @@ class Fan:
         angles = [angle_min + increment * i for i in range(samples)]
         # Not NumPy's sine and cosine: their last bits depend on the processor's vector instructions.
         self._dx, self._dy = (np.array([function(angle) for angle in angles]) for function in (math.cos, math.sin))
-        struct = FanStruct(
+        struct = BeamsStruct(
             angle_min,
             1.0 / increment,
             (samples - 1) * increment + 2.0 * TOLERANCE,
@@ -85,9 +85,9 @@ class Fan:
         self._as_parameter_ = ctypes.pointer(struct)
 
     def casting(
-        self, scene: Scene, robots: Sequence[int], max_range: float, distances: np.ndarray
+        self, scene: BeamScene, robots: Sequence[int], max_range: float, distances: np.ndarray
     ) -> Callable[[], object]:
-        """A function that casts the beams of these robots' scanners each time it is called.
+        """A function that casts the beams of these robots' sensors each time it is called.
 
         It writes to their rows of `distances` (n, samples) [m], +inf where nothing is within max_range [m]. From inside
         a circle its far side is seen; a segment is seen from both sides. A scan does not depend on which other robots
@@ -97,8 +97,8 @@ class Fan:
         address("distances", distances, (len(scene), self.samples))
         return partial(load().aro_cast, self, scene, len(robots), numbers, max_range, distances.ctypes)
 
-    def scan(self, scene: Scene, robots: Sequence[int], max_range: float = math.inf) -> np.ndarray:
-        """Distances (r, samples) [m] seen now by these robots' scanners, as casting() finds them."""
+    def scan(self, scene: BeamScene, robots: Sequence[int], max_range: float = math.inf) -> np.ndarray:
+        """Distances (r, samples) [m] seen now by these robots' sensors, as casting() finds them."""
         distances = np.empty((len(scene), self.samples))
         self.casting(scene, robots, max_range, distances)()
         return distances[list(robots)]
@@ -106,9 +106,9 @@ class Fan:
     def cast(self, world_from_scans: np.ndarray, section: CrossSection, reach: float = math.inf) -> np.ndarray:
         """Distances (r, samples) [m] from poses (r, 3) [x m, y m, yaw rad]; +inf where nothing is within `reach` [m].
 
-        For repeated scans in one world a Scene is faster.
+        For repeated scans in one world a BeamScene is faster.
         """
         poses = np.ascontiguousarray(world_from_scans, dtype=np.float64)
         address("world_from_scans", poses, (None, 3))
-        scene = Scene([ScanPlane(section)], [0] * len(poses), np.zeros_like(poses), poses)
+        scene = BeamScene([BeamPlane(section)], [0] * len(poses), np.zeros_like(poses), poses)
         return self.scan(scene, range(len(poses)), reach)

@@ -1,8 +1,8 @@
-/* Exact distances along the beams of planar scanners to segments, circles and other robots.
+/* Exact distances along the beams of planar sensors to segments, circles and other robots.
  *
  * A shape is compared only with the beams between the bearings of its two edges. In a grid, only the segments in tiles
  * that beams pass through are compared. Each distance depends on one beam and one shape only, and a beam's result is
- * their minimum, so results depend neither on the order of the shapes nor on which other scanners are cast.
+ * their minimum, so results depend neither on the order of the shapes nor on which other sensors are cast.
  *
  * The structures are mirrored in caster_library.py; ARO_CASTER_VERSION changes with them.
  */
@@ -13,49 +13,49 @@
 
 #include "grid.h"
 
-#define ARO_CASTER_VERSION 5
+#define ARO_CASTER_VERSION 6
 #define TURN 6.283185307179586 /* [rad] */
 #define TOLERANCE 1e-9         /* [rad] a beam this close to a shape's edge hits it: none slips between two walls */
 #define ROUGH 2e-5             /* [rad] the bearings between which beams are compared with a circle are wider by this */
 #define CULL (1.0 + 1e-9)      /* rounding errors never put a shape beyond max_range */
 
-#define BLOCK 2  /* tiles on each side of the scanner's whose segments are cast before beams are walked */
+#define BLOCK 2  /* tiles on each side of the sensor's whose segments are cast before beams are walked */
 
 /* Status of aro_cast */
 #define OK 0
 #define NO_SUCH_ROBOT 1
 #define POSE_NOT_FINITE 2
 
-/* Beam i points at angle_min + i * increment [rad] in the scanner's frame; increment > 0. */
-struct fan {
+/* Beam i points at angle_min + i * increment [rad] in the sensor's frame; increment > 0. */
+struct beams {
     double angle_min, per_angle; /* per_angle = 1 / increment */
     double end;                  /* [rad] a little more than from the first beam to the last */
     int64_t samples;
     const double *dx, *dy; /* (samples,) unit vectors */
 };
 
-/* What scanners at one height see. */
-struct scan_plane {
+/* What sensors at one height see. */
+struct beam_plane {
     int64_t n_segments, n_circles, n_bodies;
     const double *segments; /* (n_segments, 2, 2) [m] in the world */
     const double *circles;  /* (n_circles, 3) x, y, radius [m] in the world */
     const double *bodies;   /* (n_bodies, 3) x, y, radius [m] of robots' circles, each in its robot's frame */
     const int64_t *owners;  /* (n_bodies,) the robot of each */
     double *moved_bodies;   /* (n_bodies, 3) in the world, written by aro_cast */
-    struct grid *grid;      /* of the segments; NULL, or the scanner is outside of it: compare all of them */
+    struct grid *grid;      /* of the segments; NULL, or the sensor is outside of it: compare all of them */
 };
 
-struct scene {
+struct beam_scene {
     int64_t n_robots, n_planes;
     const double *footprints;     /* (n_robots, 3) x, y [m], yaw [rad] in the world */
-    const double *mounts;    /* (n_robots, 3) the scanner's pose in its robot's frame */
+    const double *mounts;    /* (n_robots, 3) the sensor's pose in its robot's frame */
     const int64_t *plane_of; /* (n_robots,) */
-    struct scan_plane *planes;
+    struct beam_plane *planes;
 };
 
 struct scan {
-    const struct fan *fan;
-    double x, y, c, s; /* the scanner's position [m], cosine and sine of its yaw */
+    const struct beams *beams;
+    double x, y, c, s; /* the sensor's position [m], cosine and sine of its yaw */
     double max_range;  /* [m] */
     double *nearest;   /* (samples,) [m] */
 };
@@ -63,27 +63,27 @@ struct scan {
 int aro_caster_version(void) { return ARO_CASTER_VERSION; }
 
 /* The beams from bearing low to low + span [rad], counted from the first beam; 0 for none. */
-static inline int beams_between(const struct fan *fan, double low, double span, int64_t *first, int64_t *last)
+static inline int beams_between(const struct beams *beams, double low, double span, int64_t *first, int64_t *last)
 {
-    double most = (double)(fan->samples - 1), from = (low - TOLERANCE) * fan->per_angle;
-    double to = (low + span + TOLERANCE) * fan->per_angle;
+    double most = (double)(beams->samples - 1), from = (low - TOLERANCE) * beams->per_angle;
+    double to = (low + span + TOLERANCE) * beams->per_angle;
     if (!(from <= most && to >= 0.0))
         return 0;
     *first = from > 0.0 ? (int64_t)from : 0;
     *first += (double)*first < from;
-    *last = to < most ? (int64_t)to : fan->samples - 1;
+    *last = to < most ? (int64_t)to : beams->samples - 1;
     return *first <= *last;
 }
 
 /* The least bearing [rad], counted from the first beam, from which bearings up to `span` more can meet a beam. */
-static double first_bearing(const struct fan *fan, double bearing, double span)
+static double first_bearing(const struct beams *beams, double bearing, double span)
 {
-    double angle = bearing - fan->angle_min;
+    double angle = bearing - beams->angle_min;
     angle -= TURN * floor(angle / TURN);
     return angle + span + 2.0 * TOLERANCE >= TURN ? angle - TURN : angle;
 }
 
-static void to_scanner_frame(const struct scan *scan, const double *point, double *x, double *y)
+static void to_sensor_frame(const struct scan *scan, const double *point, double *x, double *y)
 {
     double dx = point[0] - scan->x, dy = point[1] - scan->y;
     *x = scan->c * dx + scan->s * dy;
@@ -92,14 +92,14 @@ static void to_scanner_frame(const struct scan *scan, const double *point, doubl
 
 static void cast_segment(const struct scan *scan, const double *segment)
 {
-    const struct fan *fan = scan->fan;
-    const double *dx = fan->dx, *dy = fan->dy;
+    const struct beams *beams = scan->beams;
+    const double *dx = beams->dx, *dy = beams->dy;
     double *nearest = scan->nearest;
     double ax, ay, bx, by, ex, ey, length2, a2, b2, ahead, foot, near2, near, far, low, sweep;
     int64_t first, last, i;
 
-    to_scanner_frame(scan, segment, &ax, &ay);
-    to_scanner_frame(scan, segment + 2, &bx, &by);
+    to_sensor_frame(scan, segment, &ax, &ay);
+    to_sensor_frame(scan, segment + 2, &bx, &by);
     ex = bx - ax;
     ey = by - ay;
     length2 = ex * ex + ey * ey;
@@ -108,7 +108,7 @@ static void cast_segment(const struct scan *scan, const double *segment)
     a2 = ax * ax + ay * ay;
     b2 = bx * bx + by * by;
     ahead = ax * ey - ay * ex;
-    foot = -(ax * ex + ay * ey); /* of the perpendicular from the scanner, times length2 */
+    foot = -(ax * ex + ay * ey); /* of the perpendicular from the sensor, times length2 */
     near2 = foot <= 0.0 ? a2 : foot >= length2 ? b2 : ahead * ahead / length2;
     if (near2 > scan->max_range * scan->max_range * CULL)
         return;
@@ -124,8 +124,8 @@ static void cast_segment(const struct scan *scan, const double *segment)
     low = sweep >= 0.0 ? low : low + sweep;
     sweep = fabs(sweep);
 
-    for (low = first_bearing(fan, low, sweep); low <= fan->end; low += TURN) {
-        if (!beams_between(fan, low, sweep, &first, &last))
+    for (low = first_bearing(beams, low, sweep); low <= beams->end; low += TURN) {
+        if (!beams_between(beams, low, sweep, &first, &last))
             continue;
 #pragma omp simd
         for (i = first; i <= last; i++) {
@@ -153,12 +153,12 @@ static double rough_bearing(double x, double y)
 /* From inside a circle its far side is seen. */
 static void cast_circle(const struct scan *scan, const double *circle)
 {
-    const struct fan *fan = scan->fan;
+    const struct beams *beams = scan->beams;
     double x, y, radius = circle[2], reach = scan->max_range * CULL + radius, away2, free2, tangent, half, low, touch;
     int64_t first, last, i;
     int inside;
 
-    to_scanner_frame(scan, circle, &x, &y);
+    to_sensor_frame(scan, circle, &x, &y);
     away2 = x * x + y * y;
     if (away2 > reach * reach)
         return;
@@ -170,11 +170,11 @@ static void cast_circle(const struct scan *scan, const double *circle)
     low = (inside ? 0.0 : rough_bearing(x, y)) - half;
     touch = -2.0 * TOLERANCE * radius * tangent; /* the squared half chord of a beam just outside the tangent */
 
-    for (low = first_bearing(fan, low, 2.0 * half); low <= fan->end; low += TURN) {
-        if (!beams_between(fan, low, 2.0 * half, &first, &last))
+    for (low = first_bearing(beams, low, 2.0 * half); low <= beams->end; low += TURN) {
+        if (!beams_between(beams, low, 2.0 * half, &first, &last))
             continue;
         for (i = first; i <= last; i++) {
-            double along = fan->dx[i] * x + fan->dy[i] * y, chord2 = along * along - free2, chord, distance;
+            double along = beams->dx[i] * x + beams->dy[i] * y, chord2 = along * along - free2, chord, distance;
             if (!(chord2 >= touch))
                 continue;
             chord = sqrt(chord2 > 0.0 ? chord2 : 0.0);
@@ -185,7 +185,7 @@ static void cast_circle(const struct scan *scan, const double *circle)
     }
 }
 
-static void cast_tile(const struct scan *scan, const struct scan_plane *plane, struct grid *grid, int64_t tile)
+static void cast_tile(const struct scan *scan, const struct beam_plane *plane, struct grid *grid, int64_t tile)
 {
     int32_t k;
     if (grid->tile_marks[tile] == grid->mark)
@@ -206,12 +206,12 @@ static int64_t within(double place, int64_t count)
 }
 
 /* Cast the tiles along one beam, in order, until it has hit something nearer than the next tile. */
-static void walk(const struct scan *scan, const struct scan_plane *plane, struct grid *grid, double x, double y,
+static void walk(const struct scan *scan, const struct beam_plane *plane, struct grid *grid, double x, double y,
                  double enter, int64_t beam)
 {
     const double *nearest = scan->nearest + beam;
-    double ux = scan->c * scan->fan->dx[beam] - scan->s * scan->fan->dy[beam];
-    double uy = scan->s * scan->fan->dx[beam] + scan->c * scan->fan->dy[beam];
+    double ux = scan->c * scan->beams->dx[beam] - scan->s * scan->beams->dy[beam];
+    double uy = scan->s * scan->beams->dx[beam] + scan->c * scan->beams->dy[beam];
     double per_column = 1.0 / fabs(ux), per_row = 1.0 / fabs(uy); /* path length per tile; infinite along an axis */
     double leave = scan->max_range / grid->side, to_column, to_row;
     int64_t column, row, step_column = ux > 0.0 ? 1 : -1, step_row = uy > 0.0 ? 1 : -1;
@@ -238,8 +238,8 @@ static void walk(const struct scan *scan, const struct scan_plane *plane, struct
     }
 }
 
-/* Cast the tiles around the scanner at (x, y) [tiles]; returns up to what distance [tiles] all beams are done. */
-static double cast_block(const struct scan *scan, const struct scan_plane *plane, struct grid *grid, double x, double y)
+/* Cast the tiles around the sensor at (x, y) [tiles]; returns up to what distance [tiles] all beams are done. */
+static double cast_block(const struct scan *scan, const struct beam_plane *plane, struct grid *grid, double x, double y)
 {
     int64_t column, row, first_column = (int64_t)x - BLOCK, first_row = (int64_t)y - BLOCK;
     double to_column = fmin(x - (double)first_column, (double)(first_column + 2 * BLOCK + 1) - x);
@@ -251,7 +251,7 @@ static double cast_block(const struct scan *scan, const struct scan_plane *plane
     return fmin(to_column, to_row);
 }
 
-static void cast_grid(const struct scan *scan, const struct scan_plane *plane, struct grid *grid, double x, double y)
+static void cast_grid(const struct scan *scan, const struct beam_plane *plane, struct grid *grid, double x, double y)
 {
     double done;
     int64_t i;
@@ -259,12 +259,12 @@ static void cast_grid(const struct scan *scan, const struct scan_plane *plane, s
     for (i = 0; i < grid->n_everywhere; i++)
         cast_segment(scan, plane->segments + 4 * (int64_t)grid->everywhere[i]);
     done = cast_block(scan, plane, grid, x, y);
-    for (i = 0; i < scan->fan->samples; i++)
+    for (i = 0; i < scan->beams->samples; i++)
         if (scan->nearest[i] > done * grid->side)
             walk(scan, plane, grid, x, y, done, i);
 }
 
-static void cast_plane(const struct scan *scan, const struct scan_plane *plane, int64_t robot)
+static void cast_plane(const struct scan *scan, const struct beam_plane *plane, int64_t robot)
 {
     struct grid *grid = plane->grid;
     double x = grid ? (scan->x - grid->x) / grid->side : -1.0, y = grid ? (scan->y - grid->y) / grid->side : -1.0;
@@ -289,9 +289,9 @@ static void to_world(const double *pose, const double *local, double *x, double 
     *y = pose[1] + s * local[0] + c * local[1];
 }
 
-/* Distances [m] of these robots' scanners, in their rows of `distances` (n, samples); +inf beyond max_range [m]. */
-int aro_cast(const struct fan *fan, const struct scene *scene, int64_t n_scans, const int64_t *robots, double max_range,
-             double *distances)
+/* Distances [m] of these robots' sensors, in their rows of `distances` (n, samples); +inf beyond max_range [m]. */
+int aro_cast(const struct beams *beams, const struct beam_scene *scene, int64_t n_scans, const int64_t *robots,
+             double max_range, double *distances)
 {
     int64_t i, k;
     for (i = 0; i < 3 * scene->n_robots; i++)
@@ -301,7 +301,7 @@ int aro_cast(const struct fan *fan, const struct scene *scene, int64_t n_scans, 
         if (robots[i] < 0 || robots[i] >= scene->n_robots)
             return NO_SUCH_ROBOT;
     for (i = 0; i < scene->n_planes; i++) {
-        const struct scan_plane *plane = scene->planes + i;
+        const struct beam_plane *plane = scene->planes + i;
         for (k = 0; k < plane->n_bodies; k++) {
             double *moved = plane->moved_bodies + 3 * k;
             to_world(scene->footprints + 3 * plane->owners[k], plane->bodies + 3 * k, moved, moved + 1);
@@ -311,12 +311,12 @@ int aro_cast(const struct fan *fan, const struct scene *scene, int64_t n_scans, 
     for (i = 0; i < n_scans; i++) {
         const double *footprint = scene->footprints + 3 * robots[i], *mount = scene->mounts + 3 * robots[i];
         double yaw = footprint[2] + mount[2];
-        struct scan scan = {fan, 0.0, 0.0, cos(yaw), sin(yaw), max_range, distances + robots[i] * fan->samples};
+        struct scan scan = {beams, 0.0, 0.0, cos(yaw), sin(yaw), max_range, distances + robots[i] * beams->samples};
         to_world(footprint, mount, &scan.x, &scan.y);
-        for (k = 0; k < fan->samples; k++)
+        for (k = 0; k < beams->samples; k++)
             scan.nearest[k] = INFINITY;
         cast_plane(&scan, scene->planes + scene->plane_of[robots[i]], robots[i]);
-        for (k = 0; k < fan->samples; k++)
+        for (k = 0; k < beams->samples; k++)
             if (scan.nearest[k] > max_range)
                 scan.nearest[k] = INFINITY;
     }

@@ -10,12 +10,12 @@ from typing import Any
 from .. import compiled
 from ..compiled import members
 
-VERSION = 5  # of the structures below and of movers and sensors.lidar, as in caster.c
+VERSION = 6  # of the structures below and of movers and sensors.lidar, as in caster.c
 REFUSED = {1: "robots: expected numbers of robots in the scene", 2: "poses: expected finite numbers"}  # as in caster.c
 
 
-class FanStruct(ctypes.Structure):
-    """`struct fan` of caster.c."""
+class BeamsStruct(ctypes.Structure):
+    """`struct beams` of caster.c."""
 
     _fields_ = [
         *members(ctypes.c_double, "angle_min per_angle end"),
@@ -37,8 +37,8 @@ class GridStruct(ctypes.Structure):
     ]
 
 
-class ScanPlaneStruct(ctypes.Structure):
-    """`struct scan_plane` of caster.c."""
+class BeamPlaneStruct(ctypes.Structure):
+    """`struct beam_plane` of caster.c."""
 
     _fields_ = [
         *members(ctypes.c_int64, "n_segments n_circles n_bodies"),
@@ -47,13 +47,13 @@ class ScanPlaneStruct(ctypes.Structure):
     ]
 
 
-class SceneStruct(ctypes.Structure):
-    """`struct scene` of caster.c."""
+class BeamSceneStruct(ctypes.Structure):
+    """`struct beam_scene` of caster.c."""
 
     _fields_ = [
         *members(ctypes.c_int64, "n_robots n_planes"),
         *members(ctypes.c_void_p, "footprints mounts plane_of"),
-        ("planes", ctypes.POINTER(ScanPlaneStruct)),
+        ("planes", ctypes.POINTER(BeamPlaneStruct)),
     ]
 
 

@@ -10,7 +10,7 @@ from ..errors import ParameterError
 from ..geometry import Pose2D, compose
 from ..robot.model import RobotModel
 from ..world.model import World
-from .beams import Fan
+from .beams import Beams
 from .cross_section import CrossSection
 from .obstacle_distance import ObstacleDistance, body_heights
 
@@ -131,5 +131,5 @@ def _is_visible(pose: Pose2D, other: Pose2D, section: CrossSection) -> bool:
     """Return whether no wall separates two poses, so that no robot starts outside a closed room or inside a wall."""
     dx, dy = other.x - pose.x, other.y - pose.y
     away = math.hypot(dx, dy)
-    ray = Fan(math.atan2(dy, dx), 1.0, 1).cast(np.array([[pose.x, pose.y, 0.0]]), section, reach=away)[0, 0]
+    ray = Beams(math.atan2(dy, dx), 1.0, 1).cast(np.array([[pose.x, pose.y, 0.0]]), section, reach=away)[0, 0]
     return bool(ray > away)

@@ -18,7 +18,7 @@ REACH = 0.5  # [m] an obstacle that is nearer is found among the segments within
 
 def body_heights(model: RobotModel) -> Tuple[float, ...]:
     """The heights [m] of the cross-sections that a robot's body is compared with; three for a Burger."""
-    top = model.scan_height
+    top = model.height_of(model.base_from_scan)
     count = 1 + max(1, math.ceil((top - MIN_HEIGHT) / MAX_SPACING))
     return tuple(np.linspace(MIN_HEIGHT, top, count).tolist())
 

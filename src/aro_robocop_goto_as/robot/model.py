@@ -8,6 +8,7 @@ from ..param_loading import positive
 from ..shapes import PlacedShape
 
 WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")  # as the TurtleBot3 drivers name them
+BASE = "base_link"
 CASTER_PREFIX = "caster"
 CAMERA_FRAME = "camera_rgb_optical_frame"  # as the TurtleBot3's camera in Gazebo names it
 
@@ -43,10 +44,9 @@ class RobotModel:
     collisions: Tuple[PlacedShape, ...]  # of all links with mass, poses in base_footprint, wheels at angle zero
     figures: ModelFigures
 
-    @property
-    def scan_height(self) -> float:
-        """Height of the scanner above the floor [m]."""
-        return self.footprint_from_base.position[2] + self.base_from_scan.position[2]
+    def height_of(self, mount: Pose3D) -> float:
+        """Height above the floor [m] of something that is mounted at a pose in base_link."""
+        return self.footprint_from_base.position[2] + mount.position[2]
 
 
 @dataclass(frozen=True)

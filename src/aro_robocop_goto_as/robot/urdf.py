@@ -10,9 +10,8 @@ from ..errors import RobotModelError
 from ..geometry import Pose2D, Pose3D, Vector3, compose3
 from ..reading import Element, finite_numbers, parse_xml, reading
 from ..shapes import Box, Cylinder, Geometry, PlacedShape, Sphere
-from .model import CAMERA_FRAME, WHEEL_JOINTS, ModelFigures, RobotModel
+from .model import BASE, CAMERA_FRAME, WHEEL_JOINTS, ModelFigures, RobotModel
 
-BASE = "base_link"
 _SIZES = ("box", "cylinder", "sphere")
 # What holds numbers in links and joints: each tag's attributes, and how many numbers each attribute has.
 _NUMBERS = {

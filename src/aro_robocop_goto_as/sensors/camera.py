@@ -6,7 +6,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
 from ..geometry import compose3
 from ..param_loading import PROFILES_OWN, parameter, positive
 from .camera_image import CameraImage, CameraSpec
-from .sensor import Calls, Robots, Sensor, Site
+from .sensor import RateParams, Robots, Sensor, Site
 
 CAMERA = "camera"
 
@@ -21,7 +21,7 @@ PROFILES: Dict[str, Dict[str, Figures]] = {
 
 
 @dataclass(frozen=True)
-class CameraParams:
+class CameraParams(RateParams):
     """The cameras: a profile, figures that replace its own, and how often they take images."""
 
     camera_profile: str = parameter("small", choices=tuple(PROFILES))
@@ -44,10 +44,10 @@ class CameraParams:
         )
 
 
-class Cameras(Sensor):
+class Camera(Sensor):
     """specs: of each robot, None for a robot without a camera; images: by robot, only of robots that were due last."""
 
-    name = CAMERA
+    topic = CAMERA
 
     def __init__(self, params: CameraParams, site: Site) -> None:
         super().__init__(site, params.camera_rate)
@@ -62,11 +62,8 @@ class Cameras(Sensor):
             self._make_renderer = CameraRenderer
         self._renderer: Any = None  # a CameraRenderer of the present world, made for the first image
 
-    def measuring(self, robots: Robots) -> Calls:
+    def measure(self, robots: Robots) -> None:
         """Take images with these robots' cameras."""
-        return [lambda: self._take(robots)]
-
-    def _take(self, robots: Robots) -> None:
         site, images = self.site, {}
         bases = [site.engine.body(robot).world_from_base for robot in range(len(site.models))]
         for robot in robots:

@@ -4,46 +4,47 @@ from dataclasses import dataclass
 from typing import Dict
 
 from ..param_loading import group
-from .bumper import BumperParams, Bumpers
-from .camera import CameraParams, Cameras
+from .bumper import Bumper, BumperParams
+from .camera import Camera, CameraParams
 from .ground_truth import GroundTruth, TruthParams
-from .imu import ImuParams, Imus
-from .lidar import Scanner
-from .odometry import Joints, Odometers, OdometryParams, Transforms
-from .scan_profiles import ScanParams
+from .imu import Imu, ImuParams
+from .lidar import Lidar
+from .lidar_profiles import LidarParams
+from .odometry import JointEncoders, OdometryParams, WheelOdometry
 from .sensor import Sensor, Site
+from .sonar import Sonar, SonarParams
 
 
 @dataclass(frozen=True)
 class SensorParams:
-    """Parameters of the sensors; the names of their rates end with _rate."""
+    """Parameters of the sensors."""
 
     ground_truth: TruthParams = group(TruthParams)
     imu: ImuParams = group(ImuParams)
     odometry: OdometryParams = group(OdometryParams)
-    scan: ScanParams = group(ScanParams)
+    lidar: LidarParams = group(LidarParams)
     bumper: BumperParams = group(BumperParams)
     camera: CameraParams = group(CameraParams)
 
+    sonar: SonarParams = group(SonarParams)
+
     def rates(self) -> Dict[str, int]:
-        """The rates [Hz] by the names of their parameters."""
-        given = {name: value for one in vars(self).values() for name, value in vars(one).items()}
-        rates = {name: value for name, value in given.items() if name.endswith("_rate")}
-        return {**rates, "scan_rate": self.scan.lidar().rate}
+        """The rates [Hz] by the names of their parameters; 0: never."""
+        return {name: rate for params in vars(self).values() for name, rate in params.rates().items()}
 
 
 class Sensors:
-    """The sensors of one simulation: attributes that are sensors, in the order in which they measure a step."""
+    """The sensors of one simulation: attributes that are sensors, in the order in which they measure and publish."""
 
     def __init__(self, params: SensorParams, site: Site, follows_truth: bool) -> None:
         """`follows_truth`: whether map -> odom is corrected with each odometry."""
+        odometry = WheelOdometry(params.odometry, site, follows_truth)
+        self.bumper = Bumper(params.bumper, site)
+        self.camera = Camera(params.camera, site)
         self.ground_truth = GroundTruth(params.ground_truth, site)
-        self.imu = Imus(params.imu, site)
-        self.odometry = Odometers(params.odometry, site, follows_truth)
-        self.joints = Joints(params.odometry, site, self.odometry)
-        self.scan = Scanner(params.scan, site)
-        self.bumper = Bumpers(params.bumper, site)
-        self.camera = Cameras(params.camera, site)
-        self.transforms = Transforms(site, params.odometry.odom_rate)
-        sensors = [sensor for sensor in vars(self).values() if isinstance(sensor, Sensor)]
-        self.by_name: Dict[str, Sensor] = {sensor.name: sensor for sensor in sensors}
+        self.imu = Imu(params.imu, site)
+        self.joints = JointEncoders(params.odometry, site, odometry)
+        self.odometry = odometry
+        self.lidar = Lidar(params.lidar, site)
+        self.sonar = Sonar(params.sonar, site)
+        self.by_topic: Dict[str, Sensor] = {sensor.topic: sensor for sensor in vars(self).values()}

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 from ..param_loading import parameter
-from .sensor import Sensor, Site
+from .sensor import Prepared, RateParams, Robots, Sensor, Site
 
-GROUND_TRUTH = "ground_truth"
+GROUND_TRUTH = "ground_truth_odom"
 
 
 @dataclass(frozen=True)
-class TruthParams:
+class TruthParams(RateParams):
     """Whether the truth is published, and how often."""
 
     ground_truth: bool = True
@@ -17,9 +17,14 @@ class TruthParams:
 
 
 class GroundTruth(Sensor):
-    """Has no rows of its own."""
+    """poses: (n, 3) world_from_footprint; twists: (n, 2) v [m/s], w [rad/s]; both are the fleet's own rows."""
 
-    name = GROUND_TRUTH
+    topic = GROUND_TRUTH
 
     def __init__(self, params: TruthParams, site: Site) -> None:
         super().__init__(site, params.ground_truth_rate if params.ground_truth else 0)
+        self.poses, self.twists = site.fleet.poses, site.fleet.twists
+
+    def prepared(self, _robots: Robots) -> Prepared:
+        """Nothing to do: the fleet's rows are up to date."""
+        return Prepared([])

@@ -1,6 +1,7 @@
 """The IMU: orientation, angular velocity and specific force."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Dict
 
 import numpy as np
@@ -8,14 +9,14 @@ import numpy as np
 from ..geometry import STANDARD_GRAVITY, Pose3D, compose3, rotation_matrix
 from ..param_loading import parameter
 from ..robot.model import BodyState
-from .sensor import Calls, Robots, Sensor, Site
+from .sensor import Prepared, RateParams, Robots, Sensor, Site
 
 IMU = "imu"
 FIRST_STREAM = 1  # of the noise of the first robot's IMU, the next one's is 2, ...
 
 
 @dataclass(frozen=True)
-class ImuParams:
+class ImuParams(RateParams):
     """Standard deviations of the IMU's white noise, the accelerometer's bias, and how often it measures."""
 
     gyro_noise: float = parameter(2e-4, low=0.0, high=100.0)  # [rad/s]
@@ -56,29 +57,25 @@ def measure(
     return sample
 
 
-class Imus(Sensor):
+class Imu(Sensor):
     """samples: (n, 10), the parts of each as described above."""
 
-    name = IMU
-    reads_fleet = False
+    topic = IMU
 
     def __init__(self, params: ImuParams, site: Site) -> None:
         super().__init__(site, params.imu_rate)
         self.params, self.samples = params, np.zeros((len(site.fleet), 10))
         self._before: Dict[int, BodyState] = {}
 
-    def before_step(self, robots: Robots) -> Calls:
-        """Keep these robots' states, to compare them with their states after the step."""
-        return [lambda: self._keep(robots)]
+    def prepared(self, robots: Robots) -> Prepared:
+        """Compare these robots' states before and after the step."""
+        return Prepared([partial(self.measure, robots)], before=[partial(self._keep, robots)])
 
     def _keep(self, robots: Robots) -> None:
         self._before = {robot: self.site.engine.body(robot) for robot in robots}
 
-    def measuring(self, robots: Robots) -> Calls:
-        """Measure these robots' IMUs."""
-        return [lambda: self._measure(robots)]
-
-    def _measure(self, robots: Robots) -> None:
+    def measure(self, robots: Robots) -> None:
+        """Measure these robots' IMUs over the step."""
         site = self.site
         for robot in robots:
             before, after, mount = self._before[robot], site.engine.body(robot), site.models[robot].base_from_imu

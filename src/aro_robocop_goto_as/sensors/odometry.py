@@ -11,14 +11,14 @@ from ..compiled import address, members
 from ..geometry import Pose2D, compose, inverse
 from ..param_loading import parameter
 from ..robot.fleet import library
-from .sensor import Calls, Robots, Sensor, Site
+from .sensor import Prepared, RateParams, Robots, Sensor, Site
 
-ODOM, JOINTS, TF = "odom", "joints", "tf"
+ODOM, JOINTS = "odom", "joint_states"
 SLIP_STREAM = 2**32  # of the noise; the streams of the other sensors are numbered from 0 up
 
 
 @dataclass(frozen=True)
-class OdometryParams:
+class OdometryParams(RateParams):
     """Errors of wheel odometry, and how often it is updated and the joints are read."""
 
     odom_source: str = parameter("encoders", choices=("encoders", "world"))  # world: the true pose, as Gazebo's
@@ -39,7 +39,7 @@ class _OdometersStruct(ctypes.Structure):
     ]
 
 
-class Odometers(Sensor):
+class WheelOdometry(Sensor):
     """One odometry per robot: wheel odometry that starts at zero, or the true pose in the world.
 
     poses: (n, 3) odom_from_footprint at the latest update: x, y [m], yaw [rad]
@@ -48,8 +48,8 @@ class Odometers(Sensor):
     update(): bring all these arrays to the fleet's present state
     """
 
-    name = ODOM
-    unasked = True  # as it is integrated
+    topic = ODOM
+    always_on = True  # it integrates: no update may be left out
 
     def __init__(self, params: OdometryParams, site: Site, follows_truth: bool = False) -> None:
         """`follows_truth`: whether map_from_odom is corrected with each measurement."""
@@ -80,10 +80,10 @@ class Odometers(Sensor):
             rows = ctypes.addressof(self._struct), site.fleet.struct.wheel_angles, address("noise", self._noise, (n, 2))
             self.update = partial(library().aro_odometry, *rows, 1.0 / params.odom_rate)
 
-    def measuring(self, _robots: Robots) -> Calls:
+    def prepared(self, _robots: Robots) -> Prepared:
         """Update the odometry of all robots."""
         slip, follow = [self._draw_slip] * self._slips, [self._follow_truth] * self._follows_truth
-        return [*slip, self.update, *follow]
+        return Prepared([*slip, self.update, *follow])
 
     def reset(self, spawns: Sequence[Pose2D]) -> None:
         """Start at zero, or at the true poses, at the wheels' present angles."""
@@ -121,24 +121,15 @@ class Odometers(Sensor):
         return pose
 
 
-class Joints(Sensor):
-    """The wheels' joints; angles: (n, 2) [rad], left and right, as the encoders read them; speeds are the fleet's."""
+class JointEncoders(Sensor):
+    """angles: (n, 2) [rad] of the wheels, left and right, as the encoders read them; speeds: (n, 2) [rad/s], exact."""
 
-    name = JOINTS
+    topic = JOINTS
 
-    def __init__(self, params: OdometryParams, site: Site, odometry: Odometers) -> None:
+    def __init__(self, params: OdometryParams, site: Site, odometry: WheelOdometry) -> None:
         super().__init__(site, params.joint_state_rate)
-        self.angles, self._odometry = np.zeros((len(site.fleet), 2)), odometry
+        self.angles, self.speeds, self._odometry = np.zeros((len(site.fleet), 2)), site.fleet.wheel_speeds, odometry
 
-    def measuring(self, _robots: Robots) -> Calls:
+    def measure(self, _robots: Robots) -> None:
         """Read the joints of all robots."""
-        return [self._read]
-
-    def _read(self) -> None:
         self.angles[:] = self._odometry.joint_angles()
-
-
-class Transforms(Sensor):
-    """odom -> base_footprint and map -> odom, which are rows of the odometry, sent with it."""
-
-    name = TF

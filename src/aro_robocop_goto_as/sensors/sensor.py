@@ -1,16 +1,18 @@
 """The interface of a sensor, and the robots, world and noise that all sensors share.
 
-Noise is repeatable by seed, stream and step: of slip, IMU and number of beams here, of ranges in lidar.c.
+Noise is repeatable by seed, stream and step: of the lidar's ranges in lidar.c, of the other sensors here.
 """
 
 import ctypes
-from typing import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Callable, Dict, NamedTuple, Sequence
 
 import numpy as np
 
 from ..geometry import Pose2D
 from ..physics.engine import Engine
-from ..raycast.scanners import Scanners
+from ..raycast.sections import Mounts, Sections
 from ..world.model import World
 
 Robots = Sequence[int]  # indices
@@ -59,7 +61,7 @@ class Site:
         """`rate` [Hz] of the steps."""
         self.world, self.engine, self.rate = world, engine, rate
         self.fleet, self.models = engine.fleet, engine.fleet.models
-        self.scanners = Scanners(self.models, world, self.fleet.poses)
+        self.sections = Sections(self.models, world, self.fleet.poses)
         self.episode = Episode(seed, 0)
         self.noise = NoiseStreams(self.episode)
 
@@ -68,25 +70,56 @@ class Site:
         """Simulated time [s] since the last reset; the poses of moving obstacles are functions of it."""
         return self.episode.step / self.rate
 
+    def reset(self, seed: int) -> None:
+        """Begin a new episode, with noise and moving obstacles at their start."""
+        self.episode.seed, self.episode.step = seed, 0
+        self.sections.move(0.0)
+
+    def change_world(self, world: World) -> None:
+        """Replace the world; its moving obstacles are where they are at the present time."""
+        self.world = world
+        self.sections.change_world(world)
+        self.sections.move(self.time)
+
+
+@dataclass(frozen=True)
+class RateParams:
+    """Parameters of a sensor; the names of its rates end with _rate."""
+
+    def rates(self) -> Dict[str, int]:
+        """The rates [Hz] by the names of their parameters; 0: never."""
+        return {name: value for name, value in vars(self).items() if name.endswith("_rate")}
+
+
+class Prepared(NamedTuple):
+    """The calls that measure some robots, made once for all steps that are alike."""
+
+    measure: Calls  # after the step
+    before: Calls = ()  # just before the step
+
 
 class Sensor:
-    """A sensor that every robot has; of its arrays, each robot's row is changed in place when the sensor is due."""
+    """A sensor that every robot has; of its arrays, each robot's row is changed in place when the sensor is due.
 
-    name = ""
-    unasked = False  # whether it is measured also while nobody subscribes
-    reads_fleet = True  # whether the fleet's rows have to be up to date before it measures
+    An ordinary sensor overrides measure(). A sensor that C measures, or that also looks at the robots before the step,
+    overrides prepared() instead.
+    """
+
+    topic = ""  # in the robot's namespace; sensors are called by it
+    always_on = False  # whether it measures also while nobody subscribes
+    frame = ""  # of its own, if the robots' URDF has none for it
+    mounts: Mounts = ()  # base_from_sensor of each robot, where the sensor has a frame of its own
 
     def __init__(self, site: Site, rate: int) -> None:
         """`rate` [Hz]; 0: never."""
         self.site, self.rate = site, rate
 
-    def before_step(self, _robots: Robots) -> Calls:
-        """The function to call just before a step on which these robots are measured."""
-        return ()
+    def measure(self, robots: Robots) -> None:
+        """Measure these robots."""
 
-    def measuring(self, _robots: Robots) -> Calls:
-        """The function that measures these robots; it is asked for once for all steps that are alike."""
-        return ()
+    def prepared(self, robots: Robots) -> Prepared:
+        """The calls that measure these robots, with the fleet's rows up to date; anew after a change of the world."""
+        return Prepared([partial(self.measure, robots)])
 
     def reset(self, _spawns: Sequence[Pose2D]) -> None:
         """Begin anew: the robots are at their spawn poses."""

@@ -1,17 +1,35 @@
 """What is due on which step, and the calls that measure it, prepared once for all steps that are alike."""
 
-from typing import Dict, Tuple
+from dataclasses import dataclass, field
+from typing import Dict, Mapping, Tuple
 
+from ..sensors.catalog import Sensors
+from ..sensors.sensor import Prepared, Robots, Site
 from ..sim_params import Rates
-from .observations import Due, Observations, Subscriptions
 from .schedule import CLOCK, CONTROL, due_next
+
+Subscriptions = Mapping[str, Robots]  # topic of a sensor -> the robots for which somebody subscribes to it
+
+
+@dataclass(eq=False)
+class Due:
+    """What is due on a step; the same object on all steps that are alike, while the subscriptions stay the same."""
+
+    clock: bool = False  # a clock tick: /clock is due
+    control: bool = False  # a control tick: the controllers' period is over
+    sensors: Subscriptions = field(default_factory=dict)  # those that are due, for whom they are subscribed to
+    prepared: Prepared = Prepared([])  # the calls that measure what is due
+
+    def of(self, topic: str) -> Robots:
+        """The robots for which a sensor is due and subscribed to."""
+        return self.sensors.get(topic, ())
 
 
 class Agenda:
     """The ticks, and the sensors that somebody subscribes to."""
 
-    def __init__(self, observed: Observations, rates: Rates) -> None:
-        self._observed, self._rates = observed, rates
+    def __init__(self, sensors: Sensors, site: Site, rates: Rates) -> None:
+        self._sensors, self._site, self._rates = sensors.by_topic, site, rates
         self._schedule_for({})
 
     def after(self, step: int, subscriptions: Subscriptions) -> Tuple[int, Due]:
@@ -23,9 +41,9 @@ class Agenda:
     def _schedule_for(self, subscriptions: Subscriptions) -> None:
         self._subscriptions = subscriptions
         rates = {CLOCK: self._rates.clock_rate, CONTROL: self._rates.control_rate}
-        for name, sensor in self._observed.by_name.items():
-            if sensor.unasked or subscriptions.get(name):
-                rates[name] = sensor.rate
+        for topic, sensor in self._sensors.items():
+            if sensor.always_on or subscriptions.get(topic):
+                rates[topic] = sensor.rate
         after = due_next(rates, self._rates.physics_rate)
         self._dues: Dict[Tuple[str, ...], Due] = {}
         for names in {names for _, names in after}:
@@ -36,11 +54,8 @@ class Agenda:
 
     def prepare(self) -> None:
         """Find the calls that measure what is due, anew after a change of the world."""
-        by_name, site = self._observed.by_name, self._observed.site
         for names, due in self._dues.items():
-            sensors = [by_name[name] for name in names if name in by_name]
-            sensors = [sensor for sensor in sensors if sensor.unasked or sensor.name in due.sensors]
-            due.before = [call for it in sensors for call in it.before_step(due.sensors.get(it.name, ()))]
-            due.measures = [call for it in sensors for call in it.measuring(due.sensors.get(it.name, ()))]
-            if any(sensor.reads_fleet for sensor in sensors):
-                due.measures = [site.engine.update_fleet, *due.measures]
+            parts = [self._sensors[name].prepared(due.of(name)) for name in names if name in self._sensors]
+            measure = [call for part in parts for call in part.measure]
+            before = [call for part in parts for call in part.before]
+            due.prepared = Prepared([self._site.engine.update_fleet, *measure] if parts else [], before)

@@ -13,10 +13,11 @@ from ..raycast.occupancy import occupancy_of
 from ..robot.base_controller import clamped
 from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
+from ..sensors.catalog import Sensors
+from ..sensors.sensor import Site
 from ..sim_params import SimParams
 from ..world.model import Occupancy, World
-from .agenda import Agenda
-from .observations import Observations, Subscriptions
+from .agenda import Agenda, Due, Subscriptions
 from .schedule import stamp_ns
 
 
@@ -32,9 +33,9 @@ class Simulator:
         self.steps = 0
         self.rate = params.rates.physics_rate  # [Hz]
         self.engine = engine
-        self.observed = Observations(params, world, engine)
-        self.lidar = self.observed.scan.lidar
-        self._agenda = Agenda(self.observed, params.rates)
+        self.site = Site(world, engine, self.rate, params.world.seed)
+        self.sensors = Sensors(params.sensors, self.site, params.topics.localization == "truth")
+        self._agenda = Agenda(self.sensors, self.site, params.rates)
         self._newly_placed: Set[int] = set()
         self.moving = False  # whether any obstacle of the world moves
         self.reset()
@@ -54,12 +55,12 @@ class Simulator:
     @property
     def world_time(self) -> float:
         """Simulated time [s] since the last reset; the poses of moving obstacles are functions of it."""
-        return self.observed.site.time
+        return self.site.time
 
     @property
     def seed(self) -> int:
         """The seed of all noise."""
-        return self.observed.site.episode.seed
+        return self.site.episode.seed
 
     # -- steps --
 
@@ -71,36 +72,35 @@ class Simulator:
         fleet = self.engine.fleet
         fleet.commands[robot], fleet.commanded_at[robot] = clamped(twist, fleet.limits[robot]), self.time
 
-    def step(self, subscriptions: Subscriptions) -> Optional[Observations]:
-        """Advance by one step, then measure what is due and subscribed to; None when nothing is due."""
-        return self.advance(subscriptions, 1)
+    def advance(self, subscriptions: Subscriptions, most: int = 1) -> Optional[Due]:
+        """Run to the next step on which something is due, and measure it; None if that is more than `most` steps on.
 
-    def advance(self, subscriptions: Subscriptions, most: int) -> Optional[Observations]:
-        """Run to the next step on which something is due, and measure it; None if that is more than `most` steps on."""
+        What is measured, for the robots that are subscribed to, is in the arrays of `sensors`.
+        """
         steps, due = self._agenda.after(self.steps, subscriptions)
         if steps > most:
             self._run(most)
             return None
-        if due.before:
+        measure, before = due.prepared
+        if before:
             self._run(steps - 1)
-            for look in due.before:
+            for look in before:
                 look()
             steps = 1
         self._run(steps)
-        for measure in due.measures:
-            measure()
-        self.observed.stamp_ns, self.observed.due = self.stamp_ns, due
-        return self.observed
+        for call in measure:
+            call()
+        return due
 
     def _run(self, steps: int) -> None:
         for at_once in [1] * steps if self.moving else [steps]:
             self.engine.advance(self.steps, at_once)
             self.steps += at_once
-            self.observed.site.episode.step += at_once
+            self.site.episode.step += at_once
             if self.moving:
                 self.engine.move_obstacles(self.world_time)
         if self.moving:
-            self.observed.site.scanners.move(self.world_time)
+            self.site.sections.move(self.world_time)
 
     # -- the state of the world and of its robots --
 
@@ -111,14 +111,13 @@ class Simulator:
         return self.engine.fleet
 
     def exact_distances(self, robot: int = 0) -> np.ndarray:
-        """What the scanner would measure now without noise and range_min: (n_beams,) [m]; no return = +inf."""
+        """What the lidar would measure now without noise and range_min: (samples,) [m]; no return = +inf."""
         self.engine.update_fleet()
-        fan, range_max = self.lidar.fan, self.lidar.spec.range_max
-        return fan.scan(self.observed.site.scanners.scene, [robot], range_max)[0]
+        return self.sensors.lidar.exact_distances(robot)
 
     def map_from_odom(self, robot: int = 0) -> Pose2D:
         """Pose of the robot's odom frame in the map."""
-        return Pose2D(*self.observed.odometry.map_from_odom[robot].tolist())
+        return Pose2D(*self.sensors.odometry.map_from_odom[robot].tolist())
 
     def world_from_footprint(self, robot: int = 0) -> Pose2D:
         """The robot's true pose after the last step."""
@@ -140,13 +139,14 @@ class Simulator:
         return [robot for robot in sorted(placed) if self.touching(robot)]
 
     def occupancy(self) -> Occupancy:
-        """The world as an occupancy grid: its own map, or a cut at the height of the first robot's scanner.
+        """The world as an occupancy grid: its own map, or a cut at the height of the first robot's lidar.
 
         In that cut, the area is free that robots can reach from their spawns and from their present places.
         """
         if self.world.occupancy is not None:
             return self.world.occupancy
-        section = self.observed.site.scanners.section(0)
+        model = self.robots[0].model
+        section = self.site.sections.section(model.height_of(model.base_from_scan))
         poses = [self.world_from_footprint(robot) for robot in range(len(self.robots))]
         starts = [*(robot.spawn for robot in self.robots), *poses]
         return occupancy_of(section.segments, section.circles_at_start, starts, self.params.world.map_resolution)
@@ -157,7 +157,8 @@ class Simulator:
         """Replace the world from the next step on; a reset keeps the new one."""
         self.world = world.with_motion(self.params.world.moving)
         self.moving = bool(self.world.moving())
-        self.observed.change_world(self.world)
+        self._close_sensors()
+        self.site.change_world(self.world)
         self._agenda.prepare()
         self.engine.change_world(self.world, self.world_time)
         self._newly_placed.update(range(len(self.robots)))
@@ -168,11 +169,11 @@ class Simulator:
         The wheels' motion since the last odometry update belongs to the time before the jump.
         """
         self.engine.update_fleet()
-        odom_from_footprint = self.observed.odometry.pose_now(robot)
+        odom_from_footprint = self.sensors.odometry.pose_now(robot)
         self.engine.place(robot, world_from_footprint)
         self._newly_placed.add(robot)
-        if not self.observed.odometry.in_world:
-            self.observed.odometry.map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
+        if not self.sensors.odometry.in_world:
+            self.sensors.odometry.map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
 
     def require_room(self, pose: Pose2D, robot: int = 0) -> None:
         """PlaceError, naming what is in the way, if a robot's footprint at a pose overlaps something."""
@@ -201,10 +202,16 @@ class Simulator:
         self.moving = bool(self.world.moving())
         self.engine.reset(spawns)
         self.engine.update_fleet()
-        self.observed.reset(self.seed if seed is None else seed, spawns)
+        for sensor in self.sensors.by_topic.values():
+            sensor.reset(spawns)
+        self.site.reset(self.seed if seed is None else seed)
         self._newly_placed = set(range(len(self.robots)))
 
     def close(self) -> None:
         """Free the engine and the renderer."""
-        self.observed.close()
+        self._close_sensors()
         self.engine.close()
+
+    def _close_sensors(self) -> None:
+        for sensor in self.sensors.by_topic.values():
+            sensor.close()

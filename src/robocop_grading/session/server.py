@@ -164,7 +164,7 @@ class ServerRun(Run):
         message.goal_id.id = name
         message.goal.position.x, message.goal.position.y = x, y
         self.stage.bag.write(GOAL, message)
-        self.stage.bag.write(MARKERS, MarkerArray(markers.goal(self.limits.reached, x, y, self.stage.robot.odom_frame)))
+        self.stage.bag.write(MARKERS, MarkerArray(markers.goal(self.limits.reached, x, y, self.stage.robot.odom)))
         self.topics.publish(GOAL, message)
         return goal
 

@@ -18,10 +18,10 @@ from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.sensors.lidar import SCAN
-from aro_robocop_goto_as.sensors.odometry import ODOM, TF
+from aro_robocop_goto_as.sensors.odometry import ODOM
 from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.agenda import Due, Subscriptions
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.observations import Observations, Subscriptions
 from aro_robocop_goto_as.simulation.running import Simulation
 
 from ..handout import AHEAD
@@ -53,14 +53,15 @@ class Stage:
         self._messages = StepMessages(self.sim, published)
         self._sensors: Dict[str, str] = {}  # by topic
         self.topics = Topics()
-        for sensor, topic in {**self.robot.topics, TF: published.tf}.items():
+        advertised = [(sensor, topic) for sensor, (topics,) in published.topics.items() for topic, _ in topics]
+        for sensor, topic in [*advertised, (ODOM, published.tf)]:
             self._sensors[topic.name] = sensor
             self.topics.advertise(topic.name, topic.data_class)
         self.topics.advertise("/tf_static", TFMessage, latch=True)
         self.topics.advertise("/clock", Clock, latch=True)  # the agent sends it
         self.odd_scan = False
-        spec = self.sim.lidar.spec
-        self._ahead = beams_ahead(spec.samples, spec.angle_min, spec.increment, AHEAD)
+        lidar = self.sim.sensors.lidar.profile
+        self._ahead = beams_ahead(lidar.samples, lidar.angle_min, lidar.increment, AHEAD)
         self.bag = ScenarioBag(self.sim, PARAMS.frames.world_frame)
         self.clock_ns = 0  # [ns] as on /clock
         self._site = Pose2D()  # world_from_odom at the scenario's start
@@ -115,9 +116,9 @@ class Stage:
         while self.sim.steps < end:
             # Until the first step that is not before the time at which the node does something by itself.
             until = end if self.node is None else min(end, -(-self.node.next_ns * self.sim.rate // NANOSECONDS))
-            observed = self.sim.advance(self._subscriptions(), max(1, until - self.sim.steps))
-            if observed is not None:
-                self._publish(observed)
+            due = self.sim.advance(self._subscriptions(), max(1, until - self.sim.steps))
+            if due is not None:
+                self._publish(due)
             if self.node is not None and self.node.next_ns <= self.sim.stamp_ns:
                 self.digest()
         return self.sample()
@@ -135,22 +136,22 @@ class Stage:
             meanwhile()
 
     def _subscriptions(self) -> Subscriptions:
-        """The node's; odometry and transforms always, for the bag."""
+        """The node's; odometry always, for the bag."""
         wanted = {sensor for topic, sensor in self._sensors.items() if self.topics.reaches(topic)}
-        return {sensor: [0] for sensor in sorted({ODOM, TF, *wanted})}
+        return {sensor: [0] for sensor in sorted({ODOM, *wanted})}
 
-    def _publish(self, observed: Observations) -> None:
-        """One step's observations to the submission and the bag."""
-        if self.odd_scan and observed.of(SCAN):
-            observed.scan.ranges[0, ::ZERO_EVERY] = 0.0
-            observed.scan.ranges[0, ::NAN_EVERY] = np.nan
-        messages = self._messages.of(observed)
+    def _publish(self, due: Due) -> None:
+        """What is due on a step to the submission and the bag."""
+        if self.odd_scan and due.of(SCAN):
+            ranges = self.sim.sensors.lidar.ranges
+            ranges[0, ::ZERO_EVERY], ranges[0, ::NAN_EVERY] = 0.0, np.nan
+        messages = self._messages.of(due)
         for topic, _, data in messages:
             if topic in self._sensors:  # the agent sends /clock when its callbacks may see it
                 self.topics.send(topic, data)
-        if observed.due.clock:
+        if due.clock:
             self.clock_ns = self.sim.stamp_ns
-        self.digest(partial(self.bag.write_step, observed.stamp_ns, messages))
+        self.digest(partial(self.bag.write_step, self.sim.stamp_ns, messages))
 
     def _publish_frames(self) -> None:
         """map -> odom has jumped."""
@@ -165,7 +166,7 @@ class Stage:
         return TFMessage(
             [
                 convert.to_transform(frames.world_frame, frames.map_frame, world_from_map, self.stamp),
-                convert.to_transform(frames.map_frame, self.robot.odom_frame, map_from_odom, self.stamp),
+                convert.to_transform(frames.map_frame, self.robot.odom, map_from_odom, self.stamp),
             ]
         )
 
@@ -173,7 +174,7 @@ class Stage:
         """The transforms that robot_state_publisher sends in the lab for the robot's links, except the wheels."""
         frames, model = PARAMS.frames, self.sim.robots[0].model
         return [
-            convert.to_transform_3d(self.robot.footprint_frame, BASE_LINK, model.footprint_from_base, self.stamp),
+            convert.to_transform_3d(self.robot.footprint, BASE_LINK, model.footprint_from_base, self.stamp),
             convert.to_transform_3d(BASE_LINK, frames.scan_frame, model.base_from_scan, self.stamp),
             convert.to_transform_3d(BASE_LINK, frames.imu_frame, model.base_from_imu, self.stamp),
         ]

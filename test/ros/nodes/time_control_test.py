@@ -3,7 +3,6 @@
 import rospy
 from aro_robocop_goto_as.msg import SimStatus
 from aro_robocop_goto_as.srv import SetPose, SetPoseRequest, Step
-from diagnostic_msgs.msg import DiagnosticArray
 from dynamic_reconfigure.client import Client
 from harness import SIMULATOR, Recorder, SystemTest, call_simulator, distance, wait_for, wait_for_connection
 from nav_msgs.msg import Odometry
@@ -67,11 +66,3 @@ class TimeControl(SystemTest):
         self.assertIn("x 2.300 y -0.400 is 0.050 m from 'walls/link/east'", answer.message)
         request.robot = "robot_9"
         self.assertIn("robot 'robot_9' is not one of: ''", self.set_pose(request).message)
-
-    def test_diagnostics_contain_world_physics_and_number_of_robots(self):
-        status = Recorder("/diagnostics", DiagnosticArray).newest().status[0]
-        values = {pair.key: pair.value for pair in status.values}
-        self.assertEqual(
-            (status.name, values["world"], values["drive"], values["robots"]),
-            ("robocop_sim: simulation", "stage_4", "wheels", "1"),
-        )

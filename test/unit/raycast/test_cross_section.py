@@ -15,7 +15,7 @@ from aro_robocop_goto_as.physics import bullet_shapes
 from aro_robocop_goto_as.physics.bullet import BulletEngine
 from aro_robocop_goto_as.physics.bullet_obstacles import WORLD_GROUP
 from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
-from aro_robocop_goto_as.raycast.beams import Fan
+from aro_robocop_goto_as.raycast.beams import Beams
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry, Mesh, Plane, Sphere
@@ -24,7 +24,7 @@ from aro_robocop_goto_as.world.model import Obstacle, World
 HEIGHT = 0.182
 ANGLES = np.linspace(-math.pi, math.pi, 721)
 DIRECTIONS = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
-FAN = Fan(-math.pi, 2.0 * math.pi / 720, 721)
+BEAMS = Beams(-math.pi, 2.0 * math.pi / 720, 721)
 
 
 def _world(geometry: Geometry, pose: Pose3D) -> World:
@@ -32,7 +32,7 @@ def _world(geometry: Geometry, pose: Pose3D) -> World:
 
 
 def _cast(world: World, origin: Pose2D = ORIGIN) -> np.ndarray:
-    return FAN.cast(np.array([[origin.x, origin.y, origin.yaw]]), CrossSection(world, HEIGHT))[0]
+    return BEAMS.cast(np.array([[origin.x, origin.y, origin.yaw]]), CrossSection(world, HEIGHT))[0]
 
 
 def _beam(angle: float) -> int:

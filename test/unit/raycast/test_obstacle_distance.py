@@ -24,7 +24,7 @@ def _nearest(geometry: Geometry, pose: Pose3D, x: float, y: float) -> "tuple[flo
 def test_cross_sections_of_a_body_reach_from_its_bottom_to_its_scanner_without_a_gap() -> None:
     for model in map(model_named, ("burger", "turtlebot2")):
         heights = body_heights(model)
-        assert (heights[0], heights[-1]) == pytest.approx((MIN_HEIGHT, model.scan_height))
+        assert (heights[0], heights[-1]) == pytest.approx((MIN_HEIGHT, model.height_of(model.base_from_scan)))
         assert max(np.diff(heights)) <= MAX_SPACING
 
 

@@ -7,7 +7,7 @@ import pytest
 from support import world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
-from aro_robocop_goto_as.raycast.beams import Fan
+from aro_robocop_goto_as.raycast.beams import Beams
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.raycast.occupancy import FREE, OCCUPIED, UNKNOWN, occupancy_of
 from aro_robocop_goto_as.shapes import Box
@@ -29,8 +29,8 @@ def test_scan_hits_fall_on_occupied_cells_of_the_map(name):
     world = world_named(name)
     cut = CrossSection(world, 0.182)
     occupancy = grid_of(cut, world.spawn, 0.05)
-    fan = Fan(0.0, math.pi / 180, 360)
-    distances = fan.cast(np.array([[world.spawn.x, world.spawn.y, 0.0]]), cut)[0]
+    beams = Beams(0.0, math.pi / 180, 360)
+    distances = beams.cast(np.array([[world.spawn.x, world.spawn.y, 0.0]]), cut)[0]
     for distance, angle in zip(distances, np.arange(360) * math.pi / 180):
         hit = world.spawn.x + distance * math.cos(angle), world.spawn.y + distance * math.sin(angle)
         nearby = [value_at(occupancy, hit[0] + dx, hit[1] + dy) for dx in (-1e-3, 1e-3) for dy in (-1e-3, 1e-3)]

@@ -41,7 +41,7 @@ def test_command_is_approached_within_its_acceleration_and_dropped_after_its_tim
     sim.command(Twist2D(0.2))
     speeds = []
     for _ in range(sim.rate):
-        sim.step({})
+        sim.advance({})
         speeds.append(float(sim.fleet.velocities[0, 0]))
     assert speeds[:3] == pytest.approx([0.005, 0.010, 0.015])
     assert speeds[45:115] == [0.2] * 70 and max(speeds[125:]) < 0.2

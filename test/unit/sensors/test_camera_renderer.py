@@ -20,9 +20,9 @@ TOLERANCE = 0.003  # [m] of depth on flat walls; larger at a cylinder's edge, wh
 
 def _image(sim: Simulator, robot: int = 0) -> CameraImage:
     while True:
-        seen = sim.step({"camera": [robot]})
-        if seen is not None and seen.of("camera"):
-            return seen.camera.images[robot]
+        due = sim.advance({"camera": [robot]})
+        if due is not None and due.of("camera"):
+            return sim.sensors.camera.images[robot]
 
 
 def _world_from_camera(model: str, pose: Pose2D) -> Pose3D:
@@ -46,7 +46,7 @@ def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, wor
     description = world_named(world)
     walls = World(world, tuple(o for o in description.obstacles if isinstance(o.geometry, Box)), pose, (), "")
     sim = simulator(world, pose, model=model, **KINEMATIC)
-    camera, spec = _world_from_camera(model, pose), sim.observed.camera.specs[0]
+    camera, spec = _world_from_camera(model, pose), sim.sensors.camera.specs[0]
     points = _points(_image(sim), camera, spec)
     x, y, _ = camera.position
     away = np.hypot(points[..., 0] - x, points[..., 1] - y)
@@ -64,7 +64,7 @@ def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, wor
 
 def test_floor_is_at_height_zero_and_sky_infinitely_far(simulator: Make) -> None:
     sim = simulator("empty", model="waffle", **KINEMATIC)
-    image, spec = _image(sim), sim.observed.camera.specs[0]
+    image, spec = _image(sim), sim.sensors.camera.specs[0]
     points = _points(image, _world_from_camera("waffle", Pose2D()), spec)
     assert np.abs(points[70:, :, 2]).max() < 0.001
     assert np.isinf(image.depth[:58]).all()
@@ -86,7 +86,7 @@ def test_images_follow_moving_obstacles_and_world_changes(simulator: Make) -> No
     sim = simulator("stage_3", Pose2D(0.0, 0.0, 0.0), model="burger_rgbd", moving=True, **KINEMATIC)
     first = _image(sim)
     for _ in range(5 * 60):
-        sim.step({})
+        sim.advance({})
     later = _image(sim)
     assert (first.depth != later.depth).any()
     sim.change_world(world_named("empty"))

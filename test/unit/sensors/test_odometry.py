@@ -13,7 +13,7 @@ from support import model_named
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.robot.base_controller import Limits
 from aro_robocop_goto_as.robot.fleet import Fleet
-from aro_robocop_goto_as.sensors.odometry import Odometers, OdometryParams
+from aro_robocop_goto_as.sensors.odometry import OdometryParams, WheelOdometry
 
 LIMITS = Limits(1.0, 1.0, 1.0, 1.0, 0.0)
 RADIUS, SEPARATION = 0.033, 0.16
@@ -29,24 +29,24 @@ def _site(fleet: Fleet) -> Any:
     return SimpleNamespace(fleet=fleet, noise=SimpleNamespace(stream=lambda _: noise))
 
 
-def _measure(odometers: Odometers) -> None:
-    for call in odometers.measuring([0]):
+def _measure(odometry: WheelOdometry) -> None:
+    for call in odometry.prepared([0]).measure:
         call()
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-5, 5), st.integers(1, 200))
 def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: float, updates: int) -> None:
     fleet = _fleet()
-    odometers = Odometers(OdometryParams(), _site(fleet))
+    odometry = WheelOdometry(OdometryParams(), _site(fleet))
     for update in range(1, updates + 1):
         travelled = update / 30.0 * np.array([v - w * SEPARATION / 2, v + w * SEPARATION / 2])
         fleet.wheel_angles[0] = travelled / RADIUS
-        odometers.update()
+        odometry.update()
     t = updates / 30.0
     chord = v * t * np.sinc(w * t / (2.0 * math.pi))
     expected = chord * math.cos(w * t / 2.0), chord * math.sin(w * t / 2.0)
-    assert odometers.poses[0, :2] == pytest.approx(expected, abs=1e-6)
-    assert odometers.twists[0] == pytest.approx((v, w), abs=1e-6)
+    assert odometry.poses[0, :2] == pytest.approx(expected, abs=1e-6)
+    assert odometry.twists[0] == pytest.approx((v, w), abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -61,23 +61,23 @@ def test_each_error_of_odometry_has_its_size_and_a_reset_forgets_it(
     params: OdometryParams, x: float, yaw: float
 ) -> None:
     fleet = _fleet()
-    odometers = Odometers(params, _site(fleet))
+    odometry = WheelOdometry(params, _site(fleet))
     fleet.wheel_angles[0] = 1.0, 1.0  # [rad]
-    _measure(odometers)
+    _measure(odometry)
     chord = x * np.sinc(yaw / (2.0 * math.pi))
-    assert odometers.poses[0] == pytest.approx((chord * math.cos(yaw / 2.0), chord * math.sin(yaw / 2.0), yaw))
+    assert odometry.poses[0] == pytest.approx((chord * math.cos(yaw / 2.0), chord * math.sin(yaw / 2.0), yaw))
     fleet.wheel_angles[0] = 9.0, 9.0
-    odometers.reset([Pose2D()])
-    _measure(odometers)
-    assert odometers.poses[0] == pytest.approx((0.0, 0.0, 0.0))
+    odometry.reset([Pose2D()])
+    _measure(odometry)
+    assert odometry.poses[0] == pytest.approx((0.0, 0.0, 0.0))
 
 
 def test_pose_now_is_that_of_the_next_update_without_its_slip() -> None:
     fleet = _fleet()
-    odometers = Odometers(OdometryParams(odom_slip=0.1), _site(fleet))
-    _measure(odometers)
+    odometry = WheelOdometry(OdometryParams(odom_slip=0.1), _site(fleet))
+    _measure(odometry)
     fleet.wheel_angles[0] = 1.0, 1.0
-    assert odometers.pose_now(0) == pytest.approx((0.033, 0.0, 0.0))
-    assert odometers.poses[0].tolist() == [0.0, 0.0, 0.0]
-    _measure(odometers)
-    assert odometers.poses[0, 0] == pytest.approx(0.033 * (1.2 + 1.1) / 2.0, rel=1e-3)
+    assert odometry.pose_now(0) == pytest.approx((0.033, 0.0, 0.0))
+    assert odometry.poses[0].tolist() == [0.0, 0.0, 0.0]
+    _measure(odometry)
+    assert odometry.poses[0, 0] == pytest.approx(0.033 * (1.2 + 1.1) / 2.0, rel=1e-3)

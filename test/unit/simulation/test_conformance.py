@@ -1,4 +1,4 @@
-"""What holds for every engine, model and world: one check, over all of their combinations."""
+"""What holds for every engine, model and world: one test a contract, over all of their combinations."""
 
 import math
 from dataclasses import replace
@@ -19,101 +19,116 @@ ENGINES: Dict[str, Dict[str, Any]] = {
 MODELS = ["burger", "burger_rgbd", "waffle", "waffle_pi", "turtlebot2"]
 WORLDS = ["empty", "world", "stage_4", "maze_1"]
 CLOSED = ["world", "maze_1"]  # walls all around, and nothing that moves
-RATES = {"scan": 10, "odom": 30, "tf": 30, "joints": 30, "ground_truth": 30, "bumper": 30}  # [Hz], by default
+RATES = {"scan": 10, "odom": 30, "joint_states": 30, "ground_truth_odom": 30, "bumper": 30}  # [Hz], by default
 SECONDS = 1  # that a run takes
 every_engine = pytest.mark.parametrize("engine", ENGINES)
 every_model = pytest.mark.parametrize("model", MODELS)
 
 
-def check_simulation(make: Make, engine: str, model: str, world: str) -> None:
-    """Determinism, reset, scans, rates and stamps, the clock, limits, and contact with walls."""
-    spawn = world_named(world).spawn
+def every_combination(test: Any) -> Any:
+    """Run a test for every engine, model and world."""
+    return every_engine(every_model(pytest.mark.parametrize("world", WORLDS)(test)))
 
-    def made(seed: int) -> Simulator:
-        small = {"camera_width": 16, "camera_height": 12}  # rendered in no time
-        return make(world, spawn, model=model, moving=True, seed=seed, **small, **ENGINES[engine])
 
-    sim = made(1)
-    first = _run(sim)
-    assert first == _run(made(1)), "the same seed gives the same run"
-    assert first != _run(made(2)), "another seed gives other noise"
-    before = sim.stamp_ns
-    sim.reset()
-    assert sim.world_from_footprint() == pytest.approx(spawn, abs=1e-9) and sim.stamp_ns == before
-    assert _run(sim) == first, "a reset starts noise and moving obstacles anew"
-    _check_scan(sim, model)
-    sim.reset()
-    _check_rates(sim, everything(1))
-    _check_limits(sim)
-    if world in CLOSED:
-        sim.reset()
-        _check_contact(sim)
+@pytest.fixture
+def make(simulator: Make, engine: str, model: str, world: str) -> Make:
+    """Makes a simulator of a robot at the world's spawn, with a seed."""
+
+    def made(seed: int = 1) -> Simulator:
+        params = dict(moving=True, seed=seed, camera_width=16, camera_height=12, **ENGINES[engine])  # small images
+        return simulator(world, world_named(world).spawn, model=model, **params)
+
+    return made
 
 
 def _run(sim: Simulator) -> List[Tuple[str, bytes]]:
     """All that was measured in a drive along an arc and a stop."""
     seen: List[Tuple[str, bytes]] = []
+    rows = {
+        "odom": sim.sensors.odometry.poses,
+        "ground_truth_odom": sim.sensors.ground_truth.poses,
+        "joint_states": sim.sensors.joints.angles,
+        "imu": sim.sensors.imu.samples,
+        "scan": sim.sensors.lidar.ranges,
+    }
     for step in range(SECONDS * sim.rate):
         sim.command(Twist2D(0.15, 0.4) if step < 0.7 * sim.rate else STANDSTILL)
-        observed = sim.step(everything(1))
-        if observed is not None:
-            rows = {
-                "odom": observed.odometry.poses,
-                "ground_truth": observed.fleet.poses,
-                "joints": observed.joints.angles,
-                "imu": observed.imu.samples,
-                "scan": observed.scan.ranges,
-            }
-            seen += [(name, array.tobytes()) for name, array in rows.items() if observed.of(name)]
-            seen += [
-                ("camera", image.depth.tobytes()) for image in observed.camera.images.values() if observed.of("camera")
-            ]
+        due = sim.advance(everything(sim))
+        if due is not None:
+            seen += [(topic, array.tobytes()) for topic, array in rows.items() if due.of(topic)]
+            images = sim.sensors.camera.images.values() if due.of("camera") else ()
+            seen += [("camera", image.depth.tobytes()) for image in images]
     return seen
 
 
-def _check_scan(sim: Simulator, model: str) -> None:
-    """After one run, its distances are those of an analytic ray cast to where obstacles are by then."""
+@every_combination
+def test_the_same_seed_gives_the_same_run_and_another_seed_other_noise(make: Make) -> None:
+    first = _run(make())
+    assert first == _run(make())
+    assert first != _run(make(2))
+
+
+@every_combination
+def test_reset_starts_noise_and_moving_obstacles_anew_at_the_spawn_while_time_goes_on(make: Make, world: str) -> None:
+    sim = make()
+    first, before = _run(sim), sim.stamp_ns
+    sim.reset()
+    assert sim.world_from_footprint() == pytest.approx(world_named(world).spawn, abs=1e-9) and sim.stamp_ns == before
+    assert _run(sim) == first
+
+
+@every_combination
+def test_distances_are_those_of_an_analytic_ray_cast_to_where_obstacles_are_by_then(make: Make, model: str) -> None:
+    sim = make()
+    _run(sim)
     obstacles = tuple(replace(obstacle, pose=obstacle.at(SECONDS)) for obstacle in sim.world.obstacles)
     x, y, yaw = compose(sim.world_from_footprint(), model_named(model).base_from_scan.on_plane())
-    angles = yaw + np.arange(360) * sim.lidar.spec.increment
+    angles = yaw + np.arange(360) * sim.sensors.lidar.profile.increment
     expected = analytic_distances(replace(sim.world, obstacles=obstacles), x, y, angles, 10.0)
     agree = np.isclose(sim.exact_distances(), expected, rtol=0.0, atol=1e-3)
     assert agree.mean() > 0.98, "all but grazing beams"
 
 
-def _check_rates(sim: Simulator, subscriptions: Dict[str, Any]) -> None:
-    start, counts, ticks, stamps = sim.stamp_ns, dict.fromkeys(RATES, 0), [0, 0], []
+@every_combination
+def test_each_sensor_keeps_its_rate_and_stamps_are_those_of_its_period(make: Make) -> None:
+    sim = make()
+    subscriptions, counts, ticks, stamps = everything(sim), dict.fromkeys(RATES, 0), [0, 0], []
     for _ in range(SECONDS * sim.rate):
-        observed = sim.step(subscriptions)
-        if observed is not None:
-            stamps.append(observed.stamp_ns)
-            counts = {name: count + len(observed.of(name)) for name, count in counts.items()}
-            ticks = [ticks[0] + observed.due.clock, ticks[1] + observed.due.control]
-            assert observed.stamp_ns % (10**9 // RATES["scan"]) == 0 or not observed.of("scan")
-    assert counts == {name: SECONDS * rate for name, rate in RATES.items()}
+        due = sim.advance(subscriptions)
+        if due is not None:
+            stamps.append(sim.stamp_ns)
+            counts = {topic: count + len(due.of(topic)) for topic, count in counts.items()}
+            ticks = [ticks[0] + due.clock, ticks[1] + due.control]
+            assert sim.stamp_ns % (10**9 // RATES["scan"]) == 0 or not due.of("scan")
+    assert counts == {topic: SECONDS * rate for topic, rate in RATES.items()}
     assert ticks == [SECONDS * 60, SECONDS * 10]
-    assert stamps == sorted(set(stamps)) and sim.stamp_ns - start == SECONDS * 10**9
+    assert stamps == sorted(set(stamps)) and sim.stamp_ns == SECONDS * 10**9
 
 
-def _check_limits(sim: Simulator) -> None:
-    """Asked for too much, the robot accelerates to its limits within its limits."""
+@every_combination
+def test_robot_that_is_asked_for_too_much_accelerates_to_its_limits_within_its_limits(
+    make: Make,
+) -> None:
+    sim = make()
     limits, dt = sim.fleet.limits[0], 1.0 / sim.rate
     speeds = [0.0]
     for _ in range(round(1.5 * sim.rate)):
         sim.command(Twist2D(0.0, 99.0))
-        sim.step({})
+        sim.advance({})
         speeds.append(float(sim.fleet.velocities[0, 1]))
     assert max(np.diff(speeds)) <= limits.max_dw * dt + 1e-9
     assert max(speeds) == pytest.approx(min(limits.max_w, 1.5 * limits.max_dw), rel=0.01)
     assert lean(sim) < math.radians(3.0)
 
 
-def _check_contact(sim: Simulator) -> None:
-    """The robot stops upright at a wall, wheels turning, and can back out."""
+@every_engine
+@every_model
+@pytest.mark.parametrize("world", CLOSED)
+def test_robot_stops_upright_at_a_wall_with_turning_wheels_and_can_back_out(make: Make) -> None:
+    sim = make()
     _drive(sim, Twist2D(0.2), 30.0, sim.touching)
     assert sim.touching(), "there is a wall ahead"
-    stuck = sim.world_from_footprint()
-    odom = _odom(sim)
+    stuck, odom = sim.world_from_footprint(), _odom(sim)
     _drive(sim, Twist2D(0.2), 2.0)
     at_wall = sim.world_from_footprint()
     assert math.dist(at_wall[:2], stuck[:2]) < 0.1 < math.dist(_odom(sim)[:2], odom[:2])
@@ -138,23 +153,14 @@ def _drive(sim: Simulator, twist: Twist2D, seconds: float, until: Callable[[], b
 def _bumper(sim: Simulator) -> bool:
     """What the bumper says next."""
     while True:
-        observed = sim.step({"bumper": [0]})
-        if observed is not None and observed.bumper.touching and observed.of("bumper"):
-            return observed.bumper.touching[0]
+        due = sim.advance({"bumper": [0]})
+        if due is not None and due.of("bumper"):
+            return sim.sensors.bumper.touching[0]
 
 
 def _odom(sim: Simulator) -> "List[float]":
     """The last pose of odometry."""
-    return sim.observed.odometry.poses[0].tolist()
-
-
-@every_engine
-@every_model
-@pytest.mark.parametrize("world", WORLDS)
-def test_simulation_of_any_engine_model_and_world_conforms(
-    simulator: Make, engine: str, model: str, world: str
-) -> None:
-    check_simulation(simulator, engine, model, world)
+    return sim.sensors.odometry.poses[0].tolist()
 
 
 @every_model

@@ -4,7 +4,7 @@ import math
 from typing import Callable, Dict, List, Tuple
 
 import pytest
-from support import ORIGIN, drive, everything
+from support import ORIGIN, driven, everything
 
 from aro_robocop_goto_as.errors import PlaceError
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose
@@ -18,19 +18,19 @@ DRIVES: List[Dict[str, object]] = [{"drive": "wheels"}, KINEMATIC]
 
 def _odom(sim: Simulator) -> Pose2D:
     """odom_from_footprint at the next update."""
-    seen = None
-    while seen is None or not seen.of("odom"):
-        seen = sim.step({"odom": [0]})
-    return Pose2D(*seen.odometry.poses[0].tolist())
+    due = None
+    while due is None or not due.of("odom"):
+        due = sim.advance({"odom": [0]})
+    return Pose2D(*sim.sensors.odometry.poses[0].tolist())
 
 
 @pytest.mark.parametrize("params", DRIVES)
 def test_robot_placed_in_a_wall_touches_it_at_once(simulator: Make, params: Dict[str, object]) -> None:
     sim = simulator("stage_1", Pose2D(1.86, 0.0), **params)
-    sim.step({})
+    sim.advance({})
     assert sim.newly_placed_in_contact() == [0] and sim.newly_placed_in_contact() == []
     sim.place(ORIGIN)
-    sim.step({})
+    sim.advance({})
     assert not sim.touching() and sim.newly_placed_in_contact() == []
 
 
@@ -42,10 +42,10 @@ def test_every_rate_parameter_is_kept(simulator: Make) -> None:
     given = {f"{name}_rate": rate for name, rate in rates.items()}
     given.update(physics_rate=600, clock_rate=1, control_rate=2, camera_width=8, camera_height=6)
     sim = simulator("empty", model="waffle", drive="kinematic", **given)
-    seen = drive(sim, STANDSTILL, 1.0, everything(1))
-    rates.update(joints=rates.pop("joint_state"), tf=rates["odom"])
-    assert {name: sum(bool(observed.of(name)) for observed in seen) for name in rates} == rates
-    assert (sum(observed.due.clock for observed in seen), sum(observed.due.control for observed in seen)) == (1, 2)
+    seen = driven(sim, STANDSTILL, 1.0, everything(sim))
+    rates.update(joint_states=rates.pop("joint_state"), ground_truth_odom=rates.pop("ground_truth"))
+    assert {topic: sum(bool(due.of(topic)) for due in seen) for topic in rates} == rates
+    assert (sum(due.clock for due in seen), sum(due.control for due in seen)) == (1, 2)
 
 
 @pytest.mark.parametrize("sensors", [(), ("odom", "scan"), ("imu",)])
@@ -55,12 +55,10 @@ def test_advancing_to_what_is_due_next_equals_single_steps(simulator: Make, sens
         seen: list[object] = []
         while sim.steps < 240:
             sim.command(Twist2D(0.1, 0.5) if sim.steps < 120 else STANDSTILL)
-            observed = sim.advance({sensor: [0] for sensor in sensors}, most)
-            if observed is not None:
-                rows = [
-                    rows.tobytes() for rows in (observed.odometry.poses, observed.scan.ranges, observed.imu.samples)
-                ]
-                seen.append((observed.stamp_ns, observed.due.clock, rows))
+            due = sim.advance({sensor: [0] for sensor in sensors}, most)
+            if due is not None:
+                arrays = (sim.sensors.odometry.poses, sim.sensors.lidar.ranges, sim.sensors.imu.samples)
+                seen.append((sim.stamp_ns, due.clock, [rows.tobytes() for rows in arrays]))
         return [*seen, sim.world_from_footprint()]
 
     assert run(1) == run(10**9)
@@ -71,9 +69,8 @@ def test_what_is_measured_does_not_depend_on_what_else_is_subscribed(simulator: 
         sim = simulator("stage_2", Pose2D(), Pose2D(1.0, 0.0))
         for step in range(120):
             sim.command(Twist2D(0.2, 0.3))
-            seen = sim.step(everything(2) if listening else {"scan": [1]} if step == 119 else {})
-        assert seen is not None
-        return list(seen.scan.ranges[1]), sim.world_from_footprint()
+            sim.advance(everything(sim) if listening else {"scan": [1]} if step == 119 else {})
+        return list(sim.sensors.lidar.ranges[1]), sim.world_from_footprint()
 
     assert run(True) == run(False)
 
@@ -82,8 +79,8 @@ def test_what_is_measured_does_not_depend_on_what_else_is_subscribed(simulator: 
 
 
 def _odom_and_truth(sim: Simulator) -> Tuple[Pose2D, Pose2D]:
-    seen = drive(sim, Twist2D(0.2, 0.0), 8.0, ["odom"])
-    return Pose2D(*seen[-1].odometry.poses[0].tolist()), sim.world_from_footprint()
+    driven(sim, Twist2D(0.2, 0.0), 8.0, ["odom"])
+    return Pose2D(*sim.sensors.odometry.poses[0].tolist()), sim.world_from_footprint()
 
 
 def test_slip_makes_odometry_overestimate_and_turn_reproducibly(simulator: Make) -> None:
@@ -99,8 +96,9 @@ def test_odometry_of_the_world_is_the_truth_wherever_the_robot_is_placed(simulat
     sim = simulator("stage_4", Pose2D(-0.7, 0.0, 0.5), odom_source="world", **errors)
     assert _odom(sim) == sim.world_from_footprint()
     sim.place(Pose2D(1.0, -1.0, 1.0))
-    seen = drive(sim, Twist2D(0.2, 0.3), 1.0, ["odom"])[-1].odometry
-    assert (Pose2D(*seen.poses[0]), Twist2D(*seen.twists[0])) == (sim.world_from_footprint(), sim.velocity())
+    driven(sim, Twist2D(0.2, 0.3), 1.0, ["odom"])
+    odom = sim.sensors.odometry
+    assert (Pose2D(*odom.poses[0]), Twist2D(*odom.twists[0])) == (sim.world_from_footprint(), sim.velocity())
     assert sim.map_from_odom() == Pose2D()
 
 
@@ -121,7 +119,7 @@ def test_placing_the_robot_between_odometry_updates_loses_no_travel(
     simulator: Make, params: Dict[str, float], accuracy: float
 ) -> None:
     sim = simulator("empty", drive="kinematic", max_linear_acceleration=1e3, odom_rate=10, **params)
-    drive(sim, Twist2D(0.2, 0.0), (240 + 23) / 240, ["odom"])  # 23 of the 24 steps between two updates
+    driven(sim, Twist2D(0.2, 0.0), (240 + 23) / 240, ["odom"])  # 23 of the 24 steps between two updates
     sim.place(Pose2D(1.0, -1.0, 1.0))
     assert compose(sim.map_from_odom(), _odom(sim)) == pytest.approx((1.0, -1.0, 1.0), abs=accuracy)
 
@@ -143,7 +141,7 @@ def test_map_of_a_world_shows_what_is_at_the_scanners_height_and_what_robots_rea
 def test_two_robots_driving_towards_each_other_collide_and_stop(simulator: Make, params: Dict[str, object]) -> None:
     sim = simulator("empty", ORIGIN, Pose2D(0.6, 0.0, math.pi), **{**params, "cmd_vel_timeout": 0.0})
     sim.command(Twist2D(0.15, 0.0), robot=0)
-    drive(sim, Twist2D(0.15, 0.0), 4.0, robot=1)
+    driven(sim, Twist2D(0.15, 0.0), 4.0, robot=1)
     assert sim.touching(0) and sim.touching(1)
     assert sim.world_from_footprint(1).x - sim.world_from_footprint(0).x > 0.05
 

@@ -94,12 +94,12 @@ def test_scans_and_contacts_follow_a_model_that_is_spawned_moved_and_deleted(sim
     assert sim.exact_distances()[0] == pytest.approx(0.832)
     sim.command(Twist2D(0.2))
     for _ in range(240 * 6):
-        sim.step({})
+        sim.advance({})
     assert 0.6 < sim.world_from_footprint().x < 0.8 and sim.touching()
     for x in (3.0, 1.5):
         sim.change_world(with_model_at(sim.world, "crate", Pose3D((x, 0.0, 0.0))))
     for _ in range(240):
-        sim.step({})
+        sim.advance({})
     assert sim.world_from_footprint().x > 0.85
     assert sim.exact_distances()[0] == pytest.approx(1.332 - sim.world_from_footprint().x, abs=1e-3)
     sim.reset()
@@ -108,5 +108,5 @@ def test_scans_and_contacts_follow_a_model_that_is_spawned_moved_and_deleted(sim
     sim.change_world(without_model(sim.world, "crate"))
     assert np.isinf(sim.exact_distances()[0]) and names(sim.world) == names(before)
     for _ in range(240 * 5):
-        sim.step({})
+        sim.advance({})
     assert sim.world_from_footprint().x > 0.9

@@ -47,7 +47,7 @@ def test_standing_robot_is_pushed_by_a_moving_obstacle(simulator, drive):
     sim = simulator("stage_4", Pose2D(0.4, 0.0), drive=drive, moving=True)
     touched = False
     for _ in range(240 * 5):
-        sim.step({})
+        sim.advance({})
         touched = touched or sim.touching()
     pose, pillar = sim.world_from_footprint(), sim.world.moving()[0].at(5.0).position
     assert touched
@@ -62,5 +62,5 @@ def test_robot_is_not_pushed_through_a_wall(burger):
     p = SimParams.of(drive="kinematic", moving=True, footprint_radius=0.105)
     sim = make_simulator(p, World("w", (wall, post), Pose2D(), (), ""), [RobotSpec("", burger, Pose2D())])
     for _ in range(2400):
-        sim.step({})
+        sim.advance({})
         assert sim.world_from_footprint().x <= 0.15 - 0.105

@@ -78,7 +78,7 @@ def _log(p: SimParams, world: World, simulator: Simulator) -> None:
             simulator.require_room(first)
         except PlaceError as error:
             rospy.logwarn("the robot starts where it has no room: %s", error)
-    scan = p.sensors.scan
+    scan = p.sensors.lidar
     given = scan.given()
     if given:
         values = ", ".join(f"{name} {value:g}" for name, value in given.items())

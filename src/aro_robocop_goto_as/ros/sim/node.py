@@ -61,16 +61,16 @@ class SimNode:
         self._pace()
         subscriptions = self._topics.subscriptions()
         while not rospy.is_shutdown():
-            observed = simulator.advance(subscriptions, time.steps_left(simulator.steps))
-            if observed is not None:
-                if observed.due.control and simulator.moving:
+            due = simulator.advance(subscriptions, time.steps_left(simulator.steps))
+            if due is not None:
+                if due.control and simulator.moving:
                     self._world.publish_moving()
-                if observed.due.clock and self._gazebo is not None:
+                if due.clock and self._gazebo is not None:
                     self._gazebo.publish()
-                self._topics.publish(observed, more=time.unbounded and not observed.due.control)
-                if observed.due.control and controllers.in_lockstep:
+                self._topics.publish(due, more=time.unbounded and not due.control)
+                if due.control and controllers.in_lockstep:
                     self._await_controllers()
-            if time.end_span(simulator.steps) or (observed is not None and observed.due.clock):
+            if time.end_span(simulator.steps) or (due is not None and due.clock):
                 self._warn()
                 self._pace()
                 self._report()
@@ -110,7 +110,7 @@ class SimNode:
             jobs.run_next(wait)
             self._publish(self._simulation.take_changes())
             if time.repetition_due():  # for nodes that start while simulated time stands still
-                self._topics.publish_clock(self._simulator.stamp_ns)
+                self._topics.publish_clock()
             self._report()
             wait = hold()
         time.pacer.waited(time.pacer.now() - started)

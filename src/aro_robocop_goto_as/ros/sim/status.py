@@ -1,15 +1,12 @@
-"""Simulator status topics ~status, ~real_time_factor, /diagnostics, and warnings about the machine and controllers."""
+"""Simulator status topics ~status, ~real_time_factor, and warnings about the machine and controllers."""
 
-import time
 from typing import List
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from std_msgs.msg import Float64, Header
+from std_msgs.msg import Float64
 
 from aro_robocop_goto_as.msg import SimStatus
 
-from ...names import SIMULATOR
 from ...simulation.lockstep import Connected, ControllerId, TickReport
 from ...simulation.running import Simulation
 from ...simulation.time_control import FactorReport
@@ -33,7 +30,6 @@ class StatusTopics:
         self._has_warned_of_full_speed = False
         self._factor = publisher("~real_time_factor", Float64, latch=True)
         self._status = publisher("~status", SimStatus, latch=True)
-        self._diagnostics = publisher("/diagnostics", DiagnosticArray)
 
     def report(self) -> bool:
         """Publish what is due; cheap when nothing is. Returns whether a second has passed."""
@@ -123,27 +119,3 @@ class StatusTopics:
             lockstep_misses=simulation.controllers.lockstep.misses,
         )
         self._status.publish(status)
-        if self._diagnostics.get_num_connections():
-            self._diagnostics.publish(_diagnostics_of(status, report.behind))
-
-
-def _diagnostics_of(status: SimStatus, is_slow: bool) -> DiagnosticArray:
-    """The same as diagnostics, stamped by the wall clock; `is_slow`: slower than the requested real-time factor."""
-    level, text = DiagnosticStatus.OK, "paused" if status.paused else "running"
-    if is_slow and not status.paused:
-        level, text = DiagnosticStatus.WARN, "slower than the requested real-time factor"
-    values = {
-        "world": status.world,
-        "robots": len(status.robots),
-        "seed": status.seed,
-        "drive": status.drive,
-        "sync": status.sync,
-        "real-time factor asked": status.factor_asked,
-        "real-time factor reached": round(status.factor_reached, 3),
-        "step time [s]": status.step_time,
-        "behind [s]": status.behind,
-        "lockstep misses": status.lockstep_misses,
-    }
-    pairs = [KeyValue(key, str(value)) for key, value in values.items()]
-    diagnosis = DiagnosticStatus(level, f"{SIMULATOR}: simulation", text, SIMULATOR, pairs)
-    return DiagnosticArray(Header(0, rospy.Time.from_sec(time.time()), ""), [diagnosis])

@@ -4,102 +4,129 @@ Transforms: world -> map -> odom -> base_footprint (REP-105). map -> odom is sta
 others; odom -> base_footprint is sent with each odometry.
 """
 
-from functools import partial
-from typing import Callable, Dict, List, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Sequence, Tuple
 
+import genpy
+from geometry_msgs.msg import TransformStamped
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
-from ...sensors.camera import CAMERA
-from ...sensors.odometry import TF
-from ...simulation.observations import Due, Observations, Subscriptions
+from ...robot.model import BASE
+from ...sensors.odometry import ODOM
+from ...simulation.agenda import Due, Subscriptions
 from ...simulation.simulator import Simulator
 from .. import convert
 from ..publishing.batch import Batch, Posted
+from ..publishing.packed import PackedMessage
 from ..publishing.publisher import DirectPublisher, publisher
 from ..publishing.rospy_internals import set_latched
-from .sensor_topics import TOPICS, SensorTopics, packed_clock, packed_transforms
+from .sensor_messages import RobotFrames, Row, packed_transforms, topics_of
+
+Made = Tuple[DirectPublisher, Callable[[genpy.Time], Any]]  # a topic, and the function that makes its message
+
+
+def packed_clock() -> PackedMessage:
+    """A message on /clock."""
+    return PackedMessage(Clock(), {"clock": None})
 
 
 class StepTopics:
     """Puts the messages together once for all steps on which the same is due, until the subscribers change."""
 
     def __init__(self, simulator: Simulator) -> None:
-        self._simulator = simulator
+        self._simulator, self._params = simulator, simulator.params
+        self.robots = [RobotFrames(row, robot.name, self._params.frames) for row, robot in enumerate(simulator.robots)]
+        self._sensors = [sensor for sensor in simulator.sensors.by_topic.values() if sensor.rate]
         self.tf = publisher("/tf", TFMessage)
         self.tf_static = publisher("/tf_static", TFMessage, latch=True)
-        self.robots = [SensorTopics(index, simulator) for index in range(len(simulator.robots))]
+        real = self._params.topics.covariances == "real"
+        self.topics: Dict[str, List[List[Tuple[DirectPublisher, Any]]]] = {  # by sensor and robot, with their messages
+            sensor.topic: [
+                [(publisher(name, kind), message) for name, kind, message in topics_of(sensor, robot, real)]
+                for robot in self.robots
+            ]
+            for sensor in self._sensors
+        }
         self.clock = publisher("/clock", Clock, latch=True)
         self._clock_message = packed_clock()
         set_latched(self.clock, self._clock_message)
         self._changes = -1  # of the publishers, when these were made:
         self._subscriptions: Subscriptions = {}
-        self._batches: Dict[Tuple[Due, int], Tuple[Sequence[Callable[[], None]], Batch]] = {}
+        self._prepared: Dict[Due, Tuple[Sequence[Made], Batch]] = {}
         self._clock_alone = Batch([])
 
     def subscriptions(self) -> Subscriptions:
-        """Sensor -> indices of the robots for which it is subscribed to."""
+        """Topic of a sensor -> indices of the robots for which it is subscribed to; odometry also for /tf."""
         if self._changes != DirectPublisher.changes:
             self._changes = DirectPublisher.changes  # before the look at the connections: one may change during it
-            self._batches = {}
+            self._prepared = {}
             self._clock_alone = Batch([(self.clock, self._clock_message)])
             subscriptions: Dict[str, List[int]] = {}
-            for index, robot in enumerate(self.robots):
-                for sensor, topic in {**robot.topics, TF: self.tf}.items():
-                    if topic.get_num_connections():
-                        subscriptions.setdefault(sensor, []).append(index)
+            for sensor, of_robots in self.topics.items():
+                also = [self.tf] if sensor == ODOM else []
+                for row, topics in enumerate(of_robots):
+                    if any(topic.get_num_connections() for topic in [*(topic for topic, _ in topics), *also]):
+                        subscriptions.setdefault(sensor, []).append(row)
             self._subscriptions = subscriptions
         return self._subscriptions
 
-    def publish(self, observed: Observations, more: bool = False) -> None:
+    def publish(self, due: Due, more: bool = False) -> None:
         """All measurements of one step; then the clock if it is due, so that a tick's data is there when it ticks.
 
         `more`: the next step's messages follow at once.
         """
-        due = observed.due
-        key = due, observed.scan.ranges.shape[1]
-        if key not in self._batches:
-            self._batches[key] = self._prepared(due)
-        unpacked, batch = self._batches[key]
-        for publish in unpacked:
-            publish()
-        batch.send(observed.stamp_ns, more)
+        if due not in self._prepared:
+            self._prepared[due] = self._prepare(due)
+        made, batch = self._prepared[due]
+        for topic, make in made:
+            topic.publish(make(convert.to_time(self._simulator.stamp_ns)))
+        batch.send(self._simulator.stamp_ns, more)
 
     def publish_static(self) -> None:
-        """world -> map, and each robot's map -> odom where that is static."""
-        simulator, frames = self._simulator, self._simulator.params.frames
+        """The transforms that change only when a robot is placed."""
+        self.tf_static.publish(self.static_transforms())
+
+    def static_transforms(self) -> List[TransformStamped]:
+        """world -> map, each robot's map -> odom where that is static, and frames of sensors that no URDF has."""
+        simulator, frames = self._simulator, self._params.frames
         stamp = convert.to_time(simulator.stamp_ns)
         transforms = [convert.to_transform(frames.world_frame, frames.map_frame, Pose2D(), stamp)]
-        if simulator.params.topics.localization == "static":
+        for robot in self.robots:
+            if self._params.topics.localization == "static":
+                map_from_odom = simulator.map_from_odom(robot.row)
+                transforms.append(convert.to_transform(robot.map, robot.odom, map_from_odom, stamp))
             transforms += [
-                convert.to_transform(frames.map_frame, robot.odom_frame, simulator.map_from_odom(index), stamp)
-                for index, robot in enumerate(self.robots)
+                convert.to_transform_3d(robot.of(BASE), robot.of(sensor.frame), sensor.mounts[robot.row], stamp)
+                for sensor in self._sensors
+                if sensor.frame
             ]
-        self.tf_static.publish(transforms)
+        return transforms
 
-    def publish_clock(self, stamp_ns: int) -> None:
-        """Simulated time [ns] alone."""
+    def publish_clock(self) -> None:
+        """Simulated time alone."""
         self.subscriptions()
-        self._clock_alone.send(stamp_ns)
+        self._clock_alone.send(self._simulator.stamp_ns)
 
-    def packed(self, due: Due) -> List[Posted]:
-        """The packed messages of what is due, with their topics."""
-        messages: List[Posted] = []
-        for sensor in TOPICS:
-            for robot in self._due(due, sensor):
-                message = robot.packed(sensor)
-                messages += [] if message is None else [(robot.topics[sensor], message)]
-        transforms = [
-            transform for robot in self._due(due, TF) for transform in robot.transforms(self._simulator.params.topics)
-        ]
-        return [*messages, *([(self.tf, packed_transforms(transforms))] if transforms else [])]
+    def due(self, due: Due) -> Iterator[Tuple[DirectPublisher, Any]]:
+        """The topics of what is due, with their messages; /tf last, with all robots' transforms in one message."""
+        for sensor, of_robots in self.topics.items():
+            for row in due.of(sensor):
+                yield from of_robots[row]
+        transforms = [transform for row in due.of(ODOM) for transform in self.transforms(self.robots[row])]
+        if transforms:
+            yield self.tf, packed_transforms(transforms)
 
-    def _due(self, due: Due, sensor: str) -> List[SensorTopics]:
-        return [self.robots[index] for index in due.sensors.get(sensor, ())]
+    def transforms(self, robot: RobotFrames) -> List[Tuple[str, str, Row]]:
+        """Parent, child and parent_from_child (3,): odom -> base; map -> odom if it follows ground truth."""
+        odometry, topics = self._simulator.sensors.odometry, self._params.topics
+        base = (robot.odom, robot.footprint, odometry.poses[robot.row])
+        followed = (robot.map, robot.odom, odometry.map_from_odom[robot.row])
+        return [base] * topics.odom_tf + [followed] * (topics.localization == "truth")
 
-    def _prepared(self, due: Due) -> Tuple[Sequence[Callable[[], None]], Batch]:
-        """The functions that publish measurements without a packed message, and the batch of all packed messages."""
-        rospys = [sensor for sensor in (*TOPICS, CAMERA) if sensor not in TOPICS or TOPICS[sensor].packed is None]
-        unpacked = [partial(robot.publish, sensor) for sensor in rospys for robot in self._due(due, sensor)]
-        return unpacked, Batch(self.packed(due), [(self.clock, self._clock_message)] if due.clock else [])
+    def _prepare(self, due: Due) -> Tuple[Sequence[Made], Batch]:
+        """The functions that make messages, and the batch of all packed messages, of topics with subscribers."""
+        topics = [(topic, message) for topic, message in self.due(due) if topic.get_num_connections()]
+        packed: List[Posted] = [posted for posted in topics if isinstance(posted[1], PackedMessage)]
+        made = [posted for posted in topics if not isinstance(posted[1], PackedMessage)]
+        return made, Batch(packed, [(self.clock, self._clock_message)] if due.clock else [])

@@ -15,7 +15,7 @@ from sensor_msgs.msg import LaserScan
 from subscriber_links import LONG, SHORT, received
 
 from aro_robocop_goto_as.ros.publishing.batch import Batch
-from aro_robocop_goto_as.ros.publishing.packed import HEADER, Field, PackedMessage, counter
+from aro_robocop_goto_as.ros.publishing.packed import PackedMessage, counter
 from aro_robocop_goto_as.ros.publishing.subscriber_link import SubscriberLink
 
 MANY = 10_000  # messages of 500 bytes, more than any socket's buffer holds
@@ -95,7 +95,7 @@ def spied(subscriber: Subscriber, before: Callable[[int], Any]) -> Any:
 
 def counted(beams: int) -> PackedMessage:
     """A scan whose header's number is counted on with each send."""
-    return PackedMessage(LaserScan(ranges=[1.0] * beams), [Field(HEADER, 4, counter())])
+    return PackedMessage(LaserScan(ranges=[1.0] * beams), {"header": counter()})
 
 
 def scan(beams: int) -> PackedMessage:

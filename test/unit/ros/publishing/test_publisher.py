@@ -1,7 +1,6 @@
 """Publishers and batches with rospy's own connections, without a ROS master."""
 
 import socket
-import struct
 import threading
 import weakref
 from types import SimpleNamespace
@@ -15,8 +14,6 @@ from subscriber_links import LONG, SHORT, Link, received
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage
 from aro_robocop_goto_as.ros.publishing.publisher import DirectPublisher, publisher, resume
-from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
-from aro_robocop_goto_as.simulation.simulator import Simulator
 
 SCAN = PackedMessage(LaserScan(ranges=[1.0] * 360))
 
@@ -104,14 +101,3 @@ def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_aga
     resume()
     latched.impl.publish(LaserScan())
     assert received(link.socket, len(_serialized(0, sent + 1))) == _serialized(0, sent + 1)
-
-
-def test_scans_are_numbered_in_sequence_whatever_their_number_of_beams(simulator: Callable[..., Simulator]) -> None:
-    sim, sent = simulator(scan_profile="lds02"), []
-    lds02 = SensorTopics(0, sim)
-    for beams in (230, 231, 230, 229, 230):
-        sim.observed.scan.ranges = sim.observed.scan.ranges_of(beams)
-        message = lds02.packed("scan")
-        Batch([(lds02.topics["scan"], message)]).send(0)
-        sent.append(struct.unpack_from("<I", message.data, 4)[0])
-    assert sent == [1, 2, 3, 4, 5]

@@ -6,7 +6,7 @@ from typing import Callable, List
 
 import pytest
 from geometry_msgs.msg import Twist
-from support import drive
+from support import driven
 
 from aro_robocop_goto_as.errors import FrameError, WorldError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
@@ -32,7 +32,7 @@ def test_states_hold_models_robots_and_their_wheels_in_the_world(simulator: Make
     sim = simulator("stage_2", Pose2D(1.0, -1.0, math.pi / 2.0), drive="kinematic", max_linear_acceleration=1e3)
     sim.command(Twist2D(0.2, 0.0))
     for _ in range(24):
-        sim.step({})
+        sim.advance({})
     models = {name: (pose, twist) for name, pose, twist in gazebo_topics.models(sim)}
     assert set(models) == {*sim.world.models, "robot_1"}
     pose, twist = models["robot_1"]
@@ -69,7 +69,7 @@ def test_velocity_of_a_model_is_in_the_axes_of_its_reference(
     ahead, aside = Pose2D(0.0, 0.0, math.pi / 2.0), Pose2D(2.0, 0.0, math.pi / 2.0)
     sim = simulator("empty", ahead, aside, drive="kinematic", max_linear_acceleration=1e3)
     sim.command(Twist2D(-0.1, 0.0), 1)
-    drive(sim, Twist2D(0.2, 0.0), 0.1)
+    driven(sim, Twist2D(0.2, 0.0), 0.1)
     states = gazebo_topics.models(sim)
     moving, frame = (gazebo_topics.state_of(name, states) for name in ("robot_1", reference))
     _, twist = gazebo_topics.relative(moving, frame)

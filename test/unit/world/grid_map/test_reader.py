@@ -49,7 +49,7 @@ def test_robot_is_stopped_by_the_walls_of_a_map(tmp_path, burger, drive):
     )
     sim.command(Twist2D(0.2))
     for _ in range(240 * 4):
-        sim.step({})
+        sim.advance({})
     assert 1.2 < sim.world_from_footprint().x < 1.45 and sim.touching()
     sim.close()
 

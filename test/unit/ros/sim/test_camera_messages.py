@@ -9,12 +9,11 @@ import ros_numpy
 from genpy import Time
 from PIL import Image as Picture
 from std_msgs.msg import Header
-from support import drive
+from support import driven
 
 from aro_robocop_goto_as.geometry import STANDSTILL
-from aro_robocop_goto_as.ros.sim import camera_topics
-from aro_robocop_goto_as.ros.sim.sensor_topics import SensorTopics
-from aro_robocop_goto_as.sensors.camera import CAMERA
+from aro_robocop_goto_as.ros.sim import camera_messages, step_topics
+from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.sensors.camera_image import CameraImage, CameraSpec
 
 SPEC = CameraSpec(32, 16, 1.2, 0.1, 8.0)
@@ -35,18 +34,18 @@ pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning:ros_numpy")
 
 
 def test_colours_are_in_the_order_of_the_encoding_also_in_the_compressed_image():
-    image = camera_topics.to_color(IMAGE, SPEC, HEADER)
+    image = camera_messages.to_color(IMAGE, SPEC, HEADER)
     assert (image.encoding, image.width, image.height, image.step) == ("rgb8", 32, 16, 96)
     np.testing.assert_array_equal(ros_numpy.numpify(image), RGB)
-    jpeg = camera_topics.to_jpeg(IMAGE, SPEC, HEADER)
+    jpeg = camera_messages.to_jpeg(IMAGE, SPEC, HEADER)
     assert jpeg.format == "rgb8; jpeg compressed bgr8"
     picture = np.asarray(Picture.open(io.BytesIO(jpeg.data)).convert("RGB")).astype(int)
     assert np.abs(picture - RGB).mean() < 20.0  # 113 with red and blue exchanged
 
 
 def test_points_match_depth_colour_and_calibration():
-    image, info = (make(IMAGE, SPEC, HEADER) for make in (camera_topics.to_depth, camera_topics.to_camera_info))
-    points = ros_numpy.numpify(camera_topics.to_points(IMAGE, SPEC, HEADER))
+    image, info = (make(IMAGE, SPEC, HEADER) for make in (camera_messages.to_depth, camera_messages.to_camera_info))
+    points = ros_numpy.numpify(camera_messages.to_points(IMAGE, SPEC, HEADER))
     depth = ros_numpy.numpify(image)
     assert (image.encoding, info.width, info.height) == ("32FC1", 32, 16)
     np.testing.assert_array_equal(depth, DEPTH)
@@ -68,14 +67,15 @@ def test_what_has_a_subscriber_is_sent_with_the_frame_and_the_stamp_of_one_image
         def publish(message):
             sent.append((topic.partition("camera/")[2], getattr(message, "encoding", kind.__name__), message.header))
 
-        return SimpleNamespace(get_num_connections=lambda: "compressed" not in topic, publish=publish)
+        subscribers = int("camera" in topic and "compressed" not in topic)
+        return SimpleNamespace(get_num_connections=lambda: subscribers, publish=publish, impl=None, links=())
 
-    monkeypatch.setattr(camera_topics, "publisher", publisher)
+    monkeypatch.setattr(step_topics, "publisher", publisher)
+    monkeypatch.setattr(step_topics, "set_latched", lambda *_: None)
     sim = simulator("empty", model=model)
-    robot = SensorTopics(0, sim)
-    drive(sim, STANDSTILL, 0.2, ["camera"])
-    if CAMERA in robot.topics:
-        robot.publish(CAMERA)
+    topics = StepTopics(sim)
+    (*_, due) = (due for due in driven(sim, STANDSTILL, 0.1, ["camera"]) if due.of("camera"))
+    topics.publish(due)
     stamps = [(header.frame_id, header.stamp.to_nsec()) for *_, header in sent]
-    assert stamps == [("robot_1/camera_rgb_optical_frame", sim.observed.stamp_ns)] * count
+    assert stamps == [("robot_1/camera_rgb_optical_frame", sim.stamp_ns)] * count
     assert [what for *what, _ in sent] == SENT[:count]

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Dict, NamedTuple, Optional, Tuple
 
 from ..param_loading import PROFILES_OWN, parameter, positive
+from .sensor import RateParams
 
 TURN = 2.0 * math.pi  # [rad]
 
@@ -18,7 +19,7 @@ class Accuracy(NamedTuple):
 
 
 @dataclass(frozen=True)
-class LidarSpec:
+class LidarProfile:
     """Scans per second [Hz]; beams spread evenly from angle_min to angle_max [rad], both ends included; ranges [m]."""
 
     rate: int
@@ -31,28 +32,23 @@ class LidarSpec:
     accuracy: Tuple[Accuracy, ...] = ()  # replaces the noise; in order of distance
     step: float = 0.0  # [m] ranges are whole multiples of it; 0: not quantised
     zero_is_none: bool = False  # no return, too near and too far are 0.0 instead of +inf, -inf, +inf (REP-117)
-    varying: int = 0  # number of beams in a scan differs from `samples` by at most this
 
     @property
     def increment(self) -> float:
         """Angle between neighbouring beams [rad], computed as in Gazebo: the span over samples - 1."""
         return (self.angle_max - self.angle_min) / (self.samples - 1)
 
-    def with_samples(self, samples: int) -> "LidarSpec":
-        """The same full turn divided among another number of beams."""
-        increment = self.increment * self.samples / samples
-        return replace(self, samples=samples, angle_max=self.angle_min + increment * (samples - 1))
 
-
-_GAZEBO = LidarSpec(10, 0.0, 6.28319, 360, 0.12, 10.0, 0.01)  # the lab's Gazebo sensor
+_GAZEBO = LidarProfile(10, 0.0, 6.28319, 360, 0.12, 10.0, 0.01)  # the lab's Gazebo sensor
 
 # LDS-01: limits and quirks of its driver, noise of its Gazebo model. LDS-02: ranges and accuracy of its data sheet;
-# scan rate and number of beams are estimated from about 2300 measurements per second and a motor speed within 2 %.
-PROFILES: Dict[str, LidarSpec] = {
+# scan rate and number of beams are estimated from about 2300 measurements per second. The real number of beams varies
+# from turn to turn, as its motor's speed does within 2 %.
+PROFILES: Dict[str, LidarProfile] = {
     "gazebo": _GAZEBO,
     "ideal": replace(_GAZEBO, noise=0.0),
-    "lds01": LidarSpec(5, 0.0, TURN - TURN / 360, 360, 0.12, 3.5, 0.01, step=0.001, zero_is_none=True),
-    "lds02": LidarSpec(
+    "lds01": LidarProfile(5, 0.0, TURN - TURN / 360, 360, 0.12, 3.5, 0.01, step=0.001, zero_is_none=True),
+    "lds02": LidarProfile(
         10,
         0.0,
         TURN - TURN / 230,
@@ -61,15 +57,14 @@ PROFILES: Dict[str, LidarSpec] = {
         8.0,
         0.0,
         zero_is_none=True,
-        varying=5,
         accuracy=(Accuracy(0.3, 0.010, 0.0), Accuracy(6.0, 0.0, 0.03), Accuracy(8.0, 0.0, 0.05)),
     ),
 }
 
 
 @dataclass(frozen=True)
-class ScanParams:
-    """The laser scanner: a profile, and figures that replace its own."""
+class LidarParams(RateParams):
+    """The lidar: a profile, and figures that replace its own."""
 
     scan_profile: str = parameter("gazebo", choices=tuple(PROFILES))
     scan_rate: Optional[int] = parameter(None, low=1, otherwise=PROFILES_OWN)
@@ -84,9 +79,13 @@ class ScanParams:
         """The figures that replace the profile's."""
         return {name: value for name, value in vars(self).items() if name != "scan_profile" and value is not None}
 
-    def lidar(self) -> LidarSpec:
-        """The scanner of the profile, with the given figures in place of its own."""
+    def profile(self) -> LidarProfile:
+        """The profile, with the given figures in place of its own."""
         figures = {name[len("scan_") :]: value for name, value in self.given().items()}
         if "noise" in figures:
             figures["accuracy"] = ()
         return replace(PROFILES[self.scan_profile], **figures)
+
+    def rates(self) -> Dict[str, int]:
+        """The profile's rate [Hz], or the given one."""
+        return {"scan_rate": self.profile().rate}

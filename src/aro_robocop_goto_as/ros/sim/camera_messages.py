@@ -1,47 +1,16 @@
-"""The topics of one robot's camera: colour, depth and points; only messages with a subscriber are made."""
+"""The messages of one robot's camera: colour, depth and points of one image."""
 
 import io
-from typing import Any, Callable, List, Tuple
+from typing import Any, Callable, Dict, Tuple
 
 import numpy as np
 import ros_numpy
-import rospy
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2
 from std_msgs.msg import Header
 
 from ...sensors.camera_image import CameraImage, CameraSpec, points_of
-from ..publishing.publisher import publisher
 
 JPEG_QUALITY = 80  # of 100, as compressed_image_transport's default
-
-
-class CameraTopics:
-    """Topics named as the TurtleBot3's in Gazebo. Colour and depth share one lens: one frame, one calibration."""
-
-    def __init__(self, prefix: str, spec: CameraSpec, frame: str) -> None:
-        self._spec = spec
-        self._frame = frame
-        self._topics: List[Tuple[rospy.Publisher, Callable[[CameraImage, CameraSpec, Header], Any]]] = [
-            (publisher(f"{prefix}camera/{name}", kind), to_message)
-            for name, kind, to_message in (
-                ("rgb/image_raw", Image, to_color),
-                ("rgb/image_raw/compressed", CompressedImage, to_jpeg),  # as image_transport names it
-                ("rgb/camera_info", CameraInfo, to_camera_info),
-                ("depth/image_raw", Image, to_depth),
-                ("depth/camera_info", CameraInfo, to_camera_info),
-                ("depth/points", PointCloud2, to_points),
-            )
-        ]
-
-    def get_num_connections(self) -> int:
-        """The number of subscribers of all topics."""
-        return sum(topic.get_num_connections() for topic, _ in self._topics)
-
-    def publish(self, image: CameraImage, stamp: rospy.Time) -> None:
-        """Publish all messages with a subscriber, from one image."""
-        for topic, to_message in self._topics:
-            if topic.get_num_connections():
-                topic.publish(to_message(image, self._spec, Header(0, stamp, self._frame)))
 
 
 def to_color(image: CameraImage, _spec: CameraSpec, header: Header) -> Image:
@@ -90,3 +59,14 @@ def to_points(image: CameraImage, spec: CameraSpec, header: Header) -> PointClou
     rgb: np.ndarray = image.rgb.astype(np.uint32)
     cloud["rgb"] = (rgb[..., 0] << 16 | rgb[..., 1] << 8 | rgb[..., 2]).view(np.float32)
     return ros_numpy.msgify(PointCloud2, cloud, header.stamp, header.frame_id)
+
+
+# By topics, which are named as the TurtleBot3's in Gazebo. Colour and depth share one lens: one frame, one calibration.
+MESSAGES: Dict[str, Tuple[Any, Callable[[CameraImage, CameraSpec, Header], Any]]] = {
+    "rgb/image_raw": (Image, to_color),
+    "rgb/image_raw/compressed": (CompressedImage, to_jpeg),  # as image_transport names it
+    "rgb/camera_info": (CameraInfo, to_camera_info),
+    "depth/image_raw": (Image, to_depth),
+    "depth/camera_info": (CameraInfo, to_camera_info),
+    "depth/points": (PointCloud2, to_points),
+}

@@ -1,6 +1,8 @@
 """Packed messages, filled by batch.c, have byte for byte the form in which ROS sends ordinary messages."""
 
+import math
 import struct
+from dataclasses import replace
 from io import BytesIO
 from types import SimpleNamespace
 from typing import Any, Callable
@@ -13,19 +15,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import Imu, LaserScan
+from sensor_msgs.msg import Imu, LaserScan, Range
 from std_msgs.msg import Header
-from support import drive
+from support import driven
 from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, yaw_of
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.publishing.batch import Batch
-from aro_robocop_goto_as.ros.publishing.packed import PackedMessage, counter
-from aro_robocop_goto_as.ros.sim import sensor_topics as packed
-from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
+from aro_robocop_goto_as.ros.publishing.packed import PackedMessage
+from aro_robocop_goto_as.ros.sim import sensor_messages as packed
+from aro_robocop_goto_as.ros.sim.step_topics import StepTopics, packed_clock
 from aro_robocop_goto_as.sensors.imu import ImuParams
-from aro_robocop_goto_as.sensors.scan_profiles import PROFILES
+from aro_robocop_goto_as.sensors.lidar_profiles import PROFILES
+from aro_robocop_goto_as.sensors.sonar import Sonar
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 NUMBER = st.floats(-1e6, 1e6)
@@ -54,26 +57,35 @@ def sent(message: Message, seq: int = 1) -> bytes:
     return struct.pack("<I", len(body.getvalue())) + body.getvalue()
 
 
+def _body(topics: Any) -> bytes:
+    """The message of the first robot's first topic of a sensor."""
+    (((_, message), *_), *_) = topics
+    return bytes(message.body())
+
+
 @given(STAMP)
 def test_clock(stamp: "tuple[int, int]") -> None:
-    assert filled(packed.packed_clock(), stamp) == sent(Clock(Time(*stamp)))
+    assert filled(packed_clock(), stamp) == sent(Clock(Time(*stamp)))
 
 
 def test_latched_message_is_the_one_that_was_sent_last() -> None:
-    clock, latched = packed.packed_clock(), BytesIO()
+    clock, latched = packed_clock(), BytesIO()
     filled(clock, (3, 4))
     clock.serialize(latched)
     assert latched.getvalue() == sent(Clock(Time(3, 4)))[4:]
 
 
 @given(st.sampled_from(sorted(PROFILES)), NAME, STAMP, st.integers(2, 400), st.randoms(use_true_random=False))
-def test_scan(profile: str, frame: str, stamp: "tuple[int, int]", beams: int, random: "object") -> None:
-    spec = PROFILES[profile].with_samples(beams)
+def test_scan_has_as_many_intensities_as_ranges_all_zero(
+    profile: str, frame: str, stamp: "tuple[int, int]", beams: int, random: "object"
+) -> None:
+    spec = replace(PROFILES[profile], samples=beams)
     ranges = np.zeros(beams)
-    message = packed.packed_scan(spec, frame, ranges, counter())
+    message = packed.packed_scan(spec, frame, ranges)
     ranges[:] = [random.choice([0.0, np.inf, -np.inf, random.uniform(0.1, 30.0)]) for _ in range(beams)]  # type: ignore[attr-defined]
     figures = (spec.angle_min, spec.angle_max, spec.increment, 0.0, 0.0, spec.range_min, spec.range_max)
-    assert filled(message, stamp) == sent(LaserScan(Header(0, Time(*stamp), frame), *figures, ranges.tolist(), []))
+    expected = LaserScan(Header(0, Time(*stamp), frame), *figures, ranges.tolist(), [0.0] * beams)
+    assert filled(message, stamp) == sent(expected)
 
 
 @given(NAME, NAME, st.lists(st.tuples(POSE, TWIST, STAMP), min_size=1, max_size=3))
@@ -110,26 +122,49 @@ def test_imu(frame: str, sample: np.ndarray, stamp: "tuple[int, int]", real: boo
 def test_odometry_of_a_real_robot_has_no_covariances_and_its_imu_those_of_the_firmware(
     simulator: Callable[..., Simulator],
 ) -> None:
-    robot = packed.SensorTopics(0, simulator(covariances="real"))
-    bodies = [robot.packed(sensor).body() for sensor in ("odom", "imu")]  # type: ignore[union-attr]
-    odom, imu = Odometry().deserialize(bodies[0]), Imu().deserialize(bodies[1])
+    topics = StepTopics(simulator(covariances="real")).topics
+    odom, imu = Odometry().deserialize(_body(topics["odom"])), Imu().deserialize(_body(topics["imu"]))
     assert (imu.orientation_covariance[0], imu.angular_velocity_covariance[4]) == (0.0025, 0.02)
     assert set(odom.pose.covariance + odom.twist.covariance) == {0.0}
 
 
-def test_each_sensor_has_its_place_among_the_messages_of_a_step(simulator: Callable[..., Simulator]) -> None:
-    assert {*packed.TOPICS, "camera", "tf"} == set(simulator().observed.by_name)
+def test_range_of_a_sonar_is_in_its_own_frame_which_is_on_tf_static(simulator: Callable[..., Simulator]) -> None:
+    topics = StepTopics(simulator(sonar=True))
+    message = Range().deserialize(_body(topics.topics["sonar"]))
+    assert (message.header.frame_id, message.radiation_type) == ("robot_1/sonar_link", Range.ULTRASOUND)
+    assert (message.min_range, message.max_range) == pytest.approx((0.02, 4.0))
+    frames = {(t.header.frame_id, t.child_frame_id): t.transform.translation for t in topics.static_transforms()}
+    mount = frames["robot_1/base_link", "robot_1/sonar_link"]
+    assert (mount.x, mount.z) == pytest.approx((0.038, 0.04))
+
+
+@given(st.floats(0.02, 4.0), STAMP)
+def test_range(distance: float, stamp: "tuple[int, int]") -> None:
+    message = packed.packed_range("sonar_link", Sonar, np.array([distance]))  # type: ignore[arg-type]
+    expected = Range(Header(0, Time(*stamp), "sonar_link"), Range.ULTRASOUND, math.radians(15.0), 0.02, 4.0, distance)
+    assert filled(message, stamp) == sent(expected)
+
+
+def test_a_derived_sensor_has_the_message_of_the_sensor_that_it_is_derived_from(
+    simulator: Callable[..., Simulator],
+) -> None:
+    class RearSonar(Sonar):
+        topic, frame = "rear_sonar", "rear_sonar_link"
+
+    sim = simulator(sonar=True)
+    (topic,) = packed.topics_of(RearSonar(sim.params.sensors.sonar, sim.site), StepTopics(sim).robots[0], False)
+    assert (topic.name, topic.kind) == ("robot_1/rear_sonar", Range)
 
 
 def test_what_a_step_publishes_has_the_time_of_this_step_as_its_stamp(simulator: Callable[..., Simulator]) -> None:
     sim = simulator()
     topics = StepTopics(sim)
     for stamp_ns in (100_000_000, 200_000_000):
-        drive(sim, Twist2D(0.2, 0.0), 0.1, ["odom"])
-        topics.publish(sim.observed)
-        message = topics.robots[0].packed("odom")
-        assert message is not None and sim.stamp_ns == stamp_ns
-        assert Odometry().deserialize(message.body()).header.stamp.to_nsec() == stamp_ns
+        (*_, due) = driven(sim, Twist2D(0.2, 0.0), 0.1, ["odom"])
+        messages = dict((topic.name, message) for topic, message in topics.due(due))
+        Batch([], filled=list(messages.values())).send(sim.stamp_ns)
+        stamp = Odometry().deserialize(messages["/robot_1/odom"].body()).header.stamp
+        assert (stamp.to_nsec(), sim.stamp_ns) == (stamp_ns, stamp_ns)
 
 
 @given(st.lists(st.tuples(NAME, NAME, POSE), min_size=1, max_size=4), STAMP)
@@ -143,8 +178,9 @@ def test_transforms_lead_from_the_map_to_where_the_robot_is_if_localization_is_t
     simulator: Callable[..., Simulator],
 ) -> None:
     sim = simulator("empty", localization="truth", odom_wheel_radius_error=0.1, drive="kinematic")
-    message = packed.packed_transforms(packed.SensorTopics(0, sim).transforms(sim.params.topics))
-    drive(sim, Twist2D(0.2, 1.0), 0.9, ["odom", "tf"])
+    topics = StepTopics(sim)
+    message = packed.packed_transforms(topics.transforms(topics.robots[0]))
+    driven(sim, Twist2D(0.2, 1.0), 0.9, ["odom"])
     filled(message, (0, 0))
     sent = sorted(TFMessage().deserialize(message.body()).transforms, key=lambda t: t.header.frame_id)
     map_from_odom, odom_from_base = (
@@ -169,5 +205,6 @@ def test_transforms_that_another_node_sends_are_left_out(
     simulator: Callable[..., Simulator], odom_tf: bool, localization: str, children: "list[str]"
 ) -> None:
     sim = simulator(odom_tf=odom_tf, localization=localization)
-    found = packed.SensorTopics(0, sim).transforms(sim.params.topics)
+    topics = StepTopics(sim)
+    found = topics.transforms(topics.robots[0])
     assert [child.rpartition("/")[2] for _, child, _ in found] == children
