@@ -2,7 +2,7 @@
 
 import enum
 from dataclasses import dataclass, replace
-from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from .checks import CHECKS, Failed, NotReached, Passed, Verdict
 from .checks.bridge import about_pending
@@ -29,6 +29,7 @@ class Outcome(enum.Enum):
     PASSED = "passed"
     FAILED = "failed"
     NOT_REACHED = "not reached"
+    NOT_HANDED_IN = "not handed in"
 
 
 @dataclass(frozen=True)
@@ -57,28 +58,42 @@ class CheckResult:
         failure = self.failure
         if failure is None:
             return f"{self.outcome.value}: {self.why}" if self.why else self.outcome.value
-        place = f"at {failure.time:.1f} s of scenario {self.scenario}"
         cause = failure.cause
         if self.follows and failure.kind is not Kind.INCOMPLETE:
             cause = f'This follows from another failed check: "{CHECKS[self.follows].contract}"'
-        return f"failed: {sentences(cause)} Expected {failure.expected}, got {failure.seen}, {place}"
+        return f"failed: {sentences(cause)} {self.observed}"
+
+    @property
+    def observed(self) -> str:
+        """What was expected and seen of a failed check, and when."""
+        failure = self.failure
+        if failure is None:
+            return ""
+        return f"Expected {failure.expected}, got {failure.seen}, at {failure.time:.1f} s of scenario {self.scenario}"
 
 
 @dataclass(frozen=True)
 class Mistake:
-    """A failure that does not follow from another failure, its cost, and how many checks it fails and blocks."""
+    """A failure that does not follow from another failure, with its cost and the checks that it fails or blocks."""
 
     check: CheckResult
     points: float
     extra: float
-    followers: int
-    blocked: int
+    followers: Tuple[CheckResult, ...]  # failed checks first
 
     @property
     def cost(self) -> str:
         """The points in words."""
         words = [f"{self.points:g} point{'' if self.points == 1 else 's'}"] if self.points or not self.extra else []
         return " and ".join([*words, *([f"{self.extra:g} extra"] if self.extra else [])])
+
+    @property
+    def consequences(self) -> str:
+        """Its followers in words: their names, by outcome."""
+        by_outcome: Dict[str, List[str]] = {}
+        for check in self.followers:
+            by_outcome.setdefault(check.outcome.value, []).append(check.marked(check.name))
+        return "; ".join(f"{outcome} because of it: {', '.join(names)}" for outcome, names in by_outcome.items())
 
     @property
     def sentence(self) -> str:
@@ -88,11 +103,12 @@ class Mistake:
 
 @dataclass(frozen=True)
 class Grade:
-    """The results of all checks of one submission, and the problems that kept parts of it from being run."""
+    """The results of all checks of one submission."""
 
     name: str
     checks: Tuple[CheckResult, ...]
-    problems: Tuple[str, ...] = ()
+    problems: Tuple[str, ...] = ()  # that kept parts of it from being run
+    notes: Tuple[str, ...] = ()  # advice and remarks, which cost no points
     files: Tuple[str, ...] = ()  # which ones were graded, in words
     tracebacks: Tuple[str, ...] = ()  # of exceptions in the grader
 
@@ -135,22 +151,39 @@ class Grade:
                 lost = [other for other in self.checks if other.follows == check.name]
                 points = total(it.points_available for it in [check, *lost] if not it.extra)
                 extra = total(it.points_available for it in [check, *lost] if it.extra)
-                failed = sum(other.outcome is Outcome.FAILED for other in lost)
-                found.append(Mistake(check, points, extra, failed, len(lost) - failed))
+                found.append(Mistake(check, points, extra, tuple(sorted(lost, key=lambda it: it.outcome.value))))
         return sorted(found, key=lambda mistake: (-mistake.points, -mistake.extra))
 
     @property
-    def failures_first(self) -> List[CheckResult]:
-        """All results in this order: mistakes, failures that follow from them, checks not reached, passed checks."""
-        order = [mistake.check for mistake in self.mistakes]
-        order += [check for check in self.checks if check.outcome is Outcome.FAILED and check.follows]
-        for outcome in (Outcome.NOT_REACHED, Outcome.PASSED):
-            order += [check for check in self.checks if check.outcome is outcome]
-        return order
+    def others(self) -> Dict[str, List[CheckResult]]:
+        """The checks that neither failed nor follow from a mistake, by their outcomes in words: passed ones last."""
+        known = {it.name for mistake in self.mistakes for it in (mistake.check, *mistake.followers)}
+        others: Dict[str, List[CheckResult]] = {}
+        for check in sorted(self.checks, key=lambda it: it.outcome is Outcome.PASSED):
+            if check.name not in known:
+                others.setdefault(check.words, []).append(check)
+        return others
 
     def failed(self) -> List[str]:
         """Names of the failed checks."""
         return [check.name for check in self.checks if check.outcome is Outcome.FAILED]
+
+
+def scored(checks: Sequence[CheckResult]) -> Tuple[float, float]:
+    """Points scored and available, without extra ones unless all of these checks are extra."""
+    counted = [check for check in checks if not check.extra] or checks
+    return total(it.points for it in counted), total(it.points_available for it in counted)
+
+
+def completed(grade: Grade, plan: Plan) -> Grade:
+    """The grade with the checks of parts that were not handed in: the total is the same for everybody."""
+    missing = [it for it in plan.checks if it.name not in {check.name for check in grade.checks}]
+    outcome = Outcome.NOT_HANDED_IN
+    results = [
+        CheckResult(it.name, it.part, it.contract, outcome, 0.0, it.points, it.extra, why=f"the {it.part}")
+        for it in missing
+    ]
+    return replace(grade, checks=(*grade.checks, *results))
 
 
 def total(points: Iterable[float]) -> float:
@@ -176,16 +209,20 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         own = [_judge(it, plan, by_name, problems.get(part, ""), faults) for it in plan.checks if it.part == part]
         checks += faults.tried("what follows from what", own, _with_reasons, own, by_name, faults)
     found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
+    notes: List[str] = []
     for part, by_name in records.items():
         nothing: List[str] = []
-        said = faults.tried(f"notes about the {part}", nothing, _notes, part, by_name, plan, checks)
-        found += [f"{part}: {it}" for it in dict.fromkeys(said)]
-    return Grade(name, tuple(checks), (*found, *faults.told), tracebacks=tuple(faults.tracebacks))
+        found += [
+            f"{part}: {it}" for it in faults.tried(f"the end of the {part}", nothing, _end_of, part, by_name, plan)
+        ]
+        said = faults.tried(f"notes about the {part}", nothing, _notes, by_name, plan, checks)
+        notes += [f"{part}: {it}" for it in dict.fromkeys(said)]
+    return Grade(name, tuple(checks), (*found, *faults.told), tuple(notes), tracebacks=tuple(faults.tracebacks))
 
 
-def _notes(part: str, records: Mapping[str, Record], plan: Plan, checks: Sequence[CheckResult]) -> List[str]:
+def _notes(records: Mapping[str, Record], plan: Plan, checks: Sequence[CheckResult]) -> List[str]:
     """What to say about a part besides its checks."""
-    said = [*_end_of(part, records, plan), *about_pending(records, plan.limits), *_programs(records)]
+    said = [*about_pending(records, plan.limits), *_programs(records)]
     if any(check.outcome is not Outcome.PASSED for check in checks):
         said += [*_unpublished(records), *_wrong_types(records, checks)]
     return said

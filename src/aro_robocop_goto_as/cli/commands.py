@@ -15,6 +15,7 @@ from . import completion, container_image, doctor, program, system_commands
 from .program import ROOT, refuse, say
 
 UNKNOWN_COMMAND = 2  # exit status
+NOT_GRADED = 4  # exit status of the graders
 SHELL_SETTINGS = """\
 [ ! -r ~/.bashrc ] || . ~/.bashrc
 PATH={venv}/bin:/usr/bin:/bin:$PATH  # ~/.bashrc may have put another Python first
@@ -41,8 +42,10 @@ def expect_something(command: str, arguments: List[str]) -> None:
     """End with an error, before anything is installed, if no argument is a file, or a folder with something in it."""
     found = any(os.path.isfile(word) or glob.glob(f"{glob.escape(word)}/*") for word in arguments)
     if not (found or program.is_dry_run() or {"-h", "--help"} & set(arguments)):
-        given = (f"{word} (the folder is empty)" if os.path.isdir(word) else word for word in arguments)
-        refuse(f"{command}: expected a file or folder with something to grade, got: {' '.join(given) or 'nothing'}")
+        word = next((word for word in arguments if not word.startswith("-")), "nothing")
+        word += " (the folder is empty)" if os.path.isdir(word) else ""
+        say(f"{command}: expected a file or folder with something to grade, got: {word}")
+        sys.exit(NOT_GRADED)
 
 
 def shell(arguments: List[str]) -> None:

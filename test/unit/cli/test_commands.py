@@ -115,8 +115,9 @@ def test_nothing_to_grade_is_refused_before_anything_is_installed(command, tmp_p
     (tmp_path / "hand_ins").mkdir()
     for words in ([], [str(tmp_path / "none.py")], [str(tmp_path / "hand_ins"), "--unsafe"]):
         done = robocop(command, *words)
-        assert (done.returncode, done.stdout) == (1, "")
+        assert (done.returncode, done.stdout) == (4, "")
         assert done.stderr.startswith(f"robocop: {command}: expected a file or folder with something to grade, got: ")
+        assert "--unsafe" not in done.stderr
         assert done.stderr.count("\n") == 1, "no other messages"
         assert ("hand_ins (the folder is empty)" in done.stderr) is ("--unsafe" in words)
 
