@@ -71,8 +71,8 @@ CHANGED: Dict[str, Changes] = {
         (IMPORT, f"{IMPORT}import traceback\n"),
         (
             POSE_READ,
-            "            try:\n                rospy.client.wait_for_service('/none', 0.01)\n"
-            f"            except rospy.ROSException:\n                traceback.print_exc()\n{POSE_READ}",
+            "            try:\n                {}['no transform yet']\n"
+            f"            except KeyError:\n                traceback.print_exc()\n{POSE_READ}",
         ),
     ),
     # Commands at 100 Hz, each of them logged; feedback at 10 Hz.

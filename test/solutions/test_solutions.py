@@ -17,7 +17,7 @@ from wrong_solutions import ADVISED, WRONG
 
 from robocop_grading.cli import INTERRUPTED
 from robocop_grading.errors import GradingError
-from robocop_grading.judge import Outcome
+from robocop_grading.grades import Outcome
 from robocop_grading.plan_file import load
 from robocop_grading.sandbox import bubblewrap as sandbox
 from robocop_grading.submission import prepare_submission

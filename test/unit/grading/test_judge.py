@@ -8,7 +8,8 @@ import pytest
 from grading_records import GOAL, PLAN, RIGHT, changed, commanded, fed_back, graded
 
 from robocop_grading import record as rec
-from robocop_grading.judge import CheckResult, Outcome, judge
+from robocop_grading.grades import CheckResult, Outcome
+from robocop_grading.judge import judge
 from robocop_grading.record import Record
 from robocop_grading.report.write import as_classroom, as_gradescope
 
