@@ -250,7 +250,7 @@ class BridgeRun(Run):
         self.begin("pending", 0)
         self.settle(1.0)
         self._send_click("odom", *BEFORE)
-        self._watch_reports(self.plan.limits.status_period + 1.0)
+        self._watch_reports(self.plan.limits.status_period + 2.0)
         self._stop_watching()
         self._send_click("odom", *SECOND)
         self.settle(2.0)

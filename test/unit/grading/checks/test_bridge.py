@@ -313,8 +313,9 @@ def test_position_that_is_wrong_in_both_goals_does_not_count_twice() -> None:
 def test_bridge_that_takes_pending_for_the_end_is_advised() -> None:
     click = _reported("state: ACTIVE", "state: SUCCEEDED")
     records = {"click": click, "replace": _replaced(rec.Cancel(5.0, "older"))}
-    pending = replace(_replaced(preempted=""), name="pending", marks={"watching": 1.0, "watched": 4.9})
-    right = replace(records["replace"], marks=pending.marks, lines=(rec.Line(2.0, "x"), rec.Line(3.0, "x")))
+    once = (rec.Line(2.0, "stops at PENDING"),)
+    pending = replace(_replaced(preempted=""), name="pending", marks={"watching": 1.0, "watched": 13.0}, lines=once)
+    right = replace(records["replace"], marks=pending.marks, lines=(rec.Line(2.0, "x"), rec.Line(12.0, "x")))
     stops, sees_none = about_pending({**records, "pending": pending}, LIMITS)
     assert stops.startswith("its reports stop while a goal is PENDING")
     assert sees_none.startswith("it does not cancel an older goal that is PENDING")
