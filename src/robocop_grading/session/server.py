@@ -8,7 +8,7 @@ from aro_robocop_goto_as.msg import GoToPositionActionGoal, GoToPositionGoal
 from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose
-from aro_robocop_goto_as.goto import Errors, track_progress
+from aro_robocop_goto_as.goto.rule import Errors, track_progress
 from aro_robocop_goto_as.ros import markers
 
 from .. import record as rec

@@ -11,7 +11,7 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import NANOSECONDS, STANDSTILL, Pose2D, Twist2D, compose, inverse
-from aro_robocop_goto_as.obstacle_ahead import beams_ahead
+from aro_robocop_goto_as.goto.obstacle_ahead import beams_ahead
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.ros import convert
