@@ -20,7 +20,7 @@ from . import faults
 from .errors import GradingError, GradingSetupError, PlanError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
-from .judge import CheckResult, Grade, Outcome, scored
+from .grades import CheckResult, Grade, Outcome, scored
 from .plan import MIDDLE, Plan
 from .plan_file import load
 from .report.write import make_report_folder
@@ -29,7 +29,7 @@ from .sandbox.bubblewrap import Sandbox, expect_private, open_sandbox
 from .submission import prepare_submission
 from .texts import printable, printable_lines
 
-# Exit statuses. 2: as argparse's, an argument, the plan or the machine has to be corrected. 130: as the shells'.
+# Exit statuses; 2 is argparse's, 130 is the shells'.
 NOT_EVERYTHING, WRONG_USE, NO_GRADE, NOT_GRADED, INTERRUPTED = 1, 2, 3, 4, 130
 SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
 WRONG_USES = (GradingSetupError, InstallationError, ParameterError, PlanError)
@@ -132,9 +132,7 @@ def _kept_traceback(args: argparse.Namespace) -> Path:
 
 
 def main() -> None:
-    """Exit status 0: every check passed; 1: not every one; 2: an argument, the plan or the machine has to be corrected;
-    3: no grade, as the machine had no time; 4: the submission can't be graded; 130: interrupted.
-    """
+    """Exit with the status that docs/grading.md describes."""
     args = arguments()
     interrupt_on_signal()
     try:
@@ -167,7 +165,7 @@ def main() -> None:
     except Exception as error:  # the grader failed on this submission
         print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MAX_SHOWN]}", file=sys.stderr)
         print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
-        sys.exit(NOT_GRADED)
+        sys.exit(NO_GRADE)
     print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)
     print(as_text(grade, {script.part: script.next_step for script in submission.scripts}))
     print(f"scenarios: seed {plan.seed}")

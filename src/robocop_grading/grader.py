@@ -11,7 +11,7 @@ from robocop_hosting.tree import remove, temporary_folder
 
 from . import judge
 from .errors import UngradableError
-from .judge import Grade
+from .grades import Grade, completed
 from .record import Record
 from .report import write as report
 from .runner import Recorded, Runner
@@ -45,7 +45,7 @@ def grade(runner: Runner, submission: Submission, folder: Path, place: Optional[
             recorded = _run(runner, submission, script, Path(work, script.part), notes)
             records[script.part], problems[script.part] = recorded.records, recorded.problem
             notes += [f"{script.part}: {it}" for it in (*recorded.told, *_missing_modules(recorded.records))]
-        judged = judge.completed(judge.judge(submission.name, plan, records, problems), plan)
+        judged = completed(judge.judge(submission.name, plan, records, problems), plan)
         told = dict.fromkeys([*judged.notes, *notes, *(submission.notes if plan.is_whole else ())])
         judged = replace(judged, files=tuple(submission.files), notes=tuple(told))
         folder.mkdir(parents=True, exist_ok=True)

@@ -6,7 +6,7 @@ import pytest
 from browser import chromium
 
 from robocop_grading.classroom.results import SHOWN, StoredGrade, page
-from robocop_grading.judge import CheckResult, Outcome
+from robocop_grading.grades import CheckResult, Outcome
 from robocop_grading.plan_file import load
 
 PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")

@@ -14,7 +14,7 @@ from robocop_hosting import tree
 
 from ..checks import Failed
 from ..checks.verdict import without_figures
-from ..judge import CheckResult, Grade, Outcome, total
+from ..grades import CheckResult, Grade, Outcome, total
 from ..plan import PARTS, Plan
 from ..report.write import render
 from .summary import Summary

@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import Any, List, Mapping, Sequence
 
 from ..files.exports import Person
-from ..judge import Outcome
+from ..grades import Outcome
 from ..plan import PARTS, Plan
 from ..texts import printable, shortened
 from .results import StoredGrade

@@ -13,7 +13,7 @@ from robocop_hosting.workspace import places
 from .. import faults
 from ..errors import UngradableError
 from ..grader import grade
-from ..judge import Grade
+from ..grades import Grade
 from ..plan import Plan
 from ..report.write import write
 from ..runner import Runner

@@ -9,6 +9,7 @@ from typing import Collection, Dict, List, NamedTuple
 import yaml
 
 from robocop_hosting import tree
+from robocop_hosting.scripts import ASIDE
 
 from ..errors import GradingSetupError
 from .archives import LEFT_OUT, is_archive
@@ -16,7 +17,6 @@ from .archives import LEFT_OUT, is_archive
 METADATA = "submission_metadata.yml"  # written by Gradescope into what it exports
 MOODLE = re.compile(r"(.+)_(\d+)_assignsubmission_[a-z]+(_.*)?")  # full name, number of the participant
 GRADESCOPE = re.compile(r"submission_\d+")
-ASIDE = re.compile(r"backup|copy|old", re.I)  # in the name of somebody's second version
 SERVERS = re.compile(r"robocop_goto_as.*\.py")
 EXPECTED = "a folder, a zip or tar archive, or a Python file"
 SEVERAL = "is this folder a class? ./robocop grade-class grades each hand-in in it"
@@ -47,20 +47,20 @@ def holds_class(folder: Path) -> bool:
 def class_folder(folder: Path, reserved: Collection[str]) -> Path:
     """The folder whose entries are the hand-ins: `folder`, or the only one in it, or in that, if it holds a class.
 
-    GradingSetupError if it is no folder, or a platform's export that is still packed.
+    GradingSetupError if it is no folder, or if a platform's export in it is still packed.
     """
     inner = folder
-    while inner.is_dir() and not inner.is_symlink() and not (inner != folder and holds_class(inner)):
+    while inner.is_dir() and not inner.is_symlink():
+        if inner != folder and holds_class(inner):
+            return inner
         entries = [path for path in visible(inner) if path.name not in reserved]
         if len(entries) != 1 or _is_named_by_platform(entries[0]):
             return folder
         (inner,) = entries
-    if inner.is_dir() and not inner.is_symlink():
-        return inner
-    if not folder.is_dir() or _is_packed_export(inner):
-        unpack = f"; unpack it first: unzip -q -d FOLDER {shlex.quote(str(inner))}" if is_archive(inner.name) else ""
-        raise GradingSetupError(f"{inner}: expected a folder with {EXPECTED} for each hand-in{unpack}")
-    return folder
+    if folder.is_dir() and not _is_packed_export(inner):
+        return folder
+    unpack = f"; unpack it first: unzip -q -d FOLDER {shlex.quote(str(inner))}" if is_archive(inner.name) else ""
+    raise GradingSetupError(f"{inner}: expected a folder with {EXPECTED} for each hand-in{unpack}")
 
 
 def _is_packed_export(path: Path) -> bool:

@@ -16,7 +16,8 @@ from aro_robocop_goto_as.cli.program import ROOT
 from .. import faults
 from ..checks import CHECKS
 from ..errors import GradingSetupError
-from ..judge import CheckResult, Grade, Mistake, Outcome, Records, scored
+from ..grades import CheckResult, Grade, Mistake, Outcome, scored
+from ..judge import Records
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
 from ..texts import printable, printable_lines, shortened

@@ -11,7 +11,7 @@ from robocop_grading.checks import Failed
 from robocop_grading.classroom.results import StoredGrade
 from robocop_grading.classroom.table import table
 from robocop_grading.cli import as_text, progress
-from robocop_grading.judge import CheckResult, Grade, Outcome, completed
+from robocop_grading.grades import CheckResult, Grade, Outcome, completed
 from robocop_grading.plan import BRIDGE_SCENARIOS, Plan
 from robocop_grading.report.write import as_classroom, as_gradescope, as_json, write
 

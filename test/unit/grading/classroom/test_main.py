@@ -8,7 +8,7 @@ from grading_records import PLAN, keep, keep_grade
 from robocop_grading.classroom.main import Gradebook, chosen, class_seed
 from robocop_grading.classroom.results import Results
 from robocop_grading.errors import GradingSetupError
-from robocop_grading.judge import Grade
+from robocop_grading.grades import Grade
 from robocop_grading.plan_file import MAX_SEED
 
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from aro_robocop_goto_as.names import SERVER
+from aro_robocop_goto_as.names import COMMAND_VARIABLE, SERVER
 from aro_robocop_goto_as.probes import x_display
 from aro_robocop_goto_as.ros.cli.overview import overview
 
@@ -46,6 +46,25 @@ def test_rviz_is_no_way_to_send_a_goal_where_there_is_no_display(monkeypatch):
     nodes = [SimpleNamespace(name=name, namespace="/", args="") for name in (SERVER, "rviz")]
     text = overview(nodes, {}, Path("/logs"), False)
     assert "RViz" not in text and "goto" in text
+
+
+@pytest.mark.parametrize(
+    "variables, command",
+    [
+        ({}, "./robocop"),
+        ({"ROS_MASTER_URI": "http://localhost:11311"}, "./robocop"),
+        ({"ROS_MASTER_URI": "http://lab:11411"}, "ROS_MASTER_URI=http://lab:11411 ./robocop"),
+        ({"ROS_MASTER_URI": "http://lab:11411", COMMAND_VARIABLE: "docker exec it"}, "docker exec it"),
+    ],
+)
+def test_commands_for_a_second_terminal_use_the_master_of_this_one(monkeypatch, variables, command):
+    for name in ("ROS_MASTER_URI", COMMAND_VARIABLE):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    rows = shown(SERVER)
+    assert rows["send a goal"].startswith(f"in a second terminal: {command} goto ")
+    assert rows["inspect"].startswith(f"in a second terminal: {command} shell, ")
 
 
 @pytest.mark.parametrize(
