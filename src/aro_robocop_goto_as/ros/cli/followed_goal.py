@@ -174,11 +174,7 @@ def _wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float
     if not rospy.get_rostime():
         return standstill()
     silence = f"no answer from {action} for {time.monotonic() - started:.0f} s"
-<<<<<<< HEAD
-    return f"{silence}{discovery.hint(action, ' --robot NAME chooses it') or '; ' + discovery.advice(action)}"
-=======
-    return f"{silence}{discovery.hint(action) or '; ' + discovery.advice()}"
->>>>>>> main
+    return f"{silence}{discovery.hint(action, ' --robot NAME chooses it') or '; ' + discovery.advice()}"
 
 
 def follow(client: actionlib.ActionClient, position: Point) -> int:

@@ -8,12 +8,8 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 from ...errors import RobocopError
 from ...names import COMMAND_VARIABLE, SERVER, WEB, robocop
 from ...param_loading import from_dict
-<<<<<<< HEAD
-from ...probes import x_display
-=======
-from ...probes import master
->>>>>>> main
-from ...sim_params import SimParams
+from ...probes import master, x_display
+from ...simulation.params import SimParams
 from ...web.access import default_host, url
 from ...web.params import WebParams
 

@@ -14,10 +14,10 @@ from ...launch_arguments import TRUE
 from ...param_loading import declared, from_dict
 from ...reading import reading
 from ...robot.model_names import urdf_of
-from ...sim_params import SimParams
+from ...simulation.params import SimParams
 from ...suggestions import did_you_mean
 from ...web.access import default_host, require_free
-from ...web_params import WebParams
+from ...web.params import WebParams
 from ...world.load import RANDOM, find_world
 from ...world.spawn_texts import parse_count, parse_robots, parse_spawn
 from ..share import share

@@ -25,13 +25,8 @@ def start_server(p: WebParams) -> Any:
     try:
         import viser
     except ImportError as error:
-<<<<<<< HEAD
-        raise WebError(f"{error}; run ./robocop web, which installs what the page needs") from error
-    access.require_free(p.web_host, p.web_port)
-=======
         raise WebError(f"{error}; run {robocop()} web, which installs what the page needs") from error
-    _require_free(p.web_host, p.web_port)
->>>>>>> main
+    access.require_free(p.web_host, p.web_port)
     with _checked_requests(p), contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
         server = viser.ViserServer(host=p.web_host, port=p.web_port, verbose=False)  # unnamed: it says "Connecting"
     if server.get_port() != p.web_port:  # viser goes on to the next port that is free
