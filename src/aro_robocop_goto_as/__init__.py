@@ -11,7 +11,8 @@ From a velocity command to odometry, scan, tf and clock:
         kinematic.c, pybullet     wheel speeds + world -> poses, velocities, wheel angles of the fleet
     simulation.agenda             the sensors that are due and subscribed to, and the calls that measure them
         sensors.catalog           the list of the sensors; each is a module with its parameters and its measurement
-    ros.sim.node                  the loop of simulation.running: has the simulator advance, publishes what it measured
+    simulation.running            the loop around all this: has the simulator advance, hands on what is due
+    ros.sim.node                  what the loop hands it on to
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
         ros.sim.sensor_messages   at the start: each sensor's topic, and its packed message, bound to a robot's row
         ros.publishing.batch      the batch: batch.c copies these rows into the packed messages and sends them

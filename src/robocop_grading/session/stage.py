@@ -22,7 +22,6 @@ from aro_robocop_goto_as.sensors.odometry import ODOM
 from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.agenda import Due, Subscriptions
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.running import Simulation
 
 from ..handout import AHEAD
 from ..plan import Plan
@@ -47,7 +46,6 @@ class Stage:
     def __init__(self, plan: Plan) -> None:
         robot = RobotSpec("", load_model(PARAMS.robots.model, share()), Pose2D())
         self.sim = make_simulator(PARAMS, world_of(plan), [robot])
-        self.simulation = Simulation(self.sim)
         published = StepTopics(self.sim)
         self.robot = published.robots[0]
         self._messages = StepMessages(self.sim, published)
@@ -85,14 +83,14 @@ class Stage:
         self.odd_scan = odd_scan
         self.push(None)
         self._site = site(index)
-        self.simulation.reset(PARAMS.world.seed)
-        self.simulation.place(site(index), anywhere=True)
+        self.sim.reset(PARAMS.world.seed)
+        self.sim.place(site(index))
         self._publish_frames()
         self.bag.write_scenery(self._site)
 
     def teleport(self, index: int, odom_from_footprint: Pose2D) -> None:
         """Place the robot elsewhere on its site; its odometry continues as if nothing had happened."""
-        self.simulation.place(compose(site(index), odom_from_footprint), anywhere=True)
+        self.sim.place(compose(site(index), odom_from_footprint))
         self._publish_frames()
 
     def command(self, twist: Twist2D) -> None:
