@@ -5,7 +5,7 @@ import re
 import shutil
 import subprocess
 from pathlib import Path
-from typing import Dict, List, Mapping, Sequence, Tuple
+from typing import List, Mapping, Sequence, Tuple
 
 from . import BenchError
 from .cases import Case
@@ -35,14 +35,12 @@ def table(cases: Sequence[Case], checkouts: Mapping[str, Tuple[Path, Mapping[str
     """
     if shutil.which("valgrind") is None:
         raise BenchError("--instructions needs valgrind: apt install valgrind")
-    lines = [" | ".join(["case", *checkouts, *["ratio"] * (len(checkouts) - 1)])]
+    lines = [["case", *checkouts, *["ratio"] * (len(checkouts) - 1)]]
     for case in cases:
-        counts: Dict[str, float] = {}
-        for name, (root, checkout) in checkouts.items():
+        counts: List[float] = []
+        for root, checkout in checkouts.values():
             first, all_of_them = (_count(case, seconds, root, checkout) for seconds in (1, 1 + SECONDS))
-            counts[name] = (all_of_them - first) / SECONDS / 1e6
-        ratio: List[float] = [counts["this"] / counts["other"]] if len(counts) > 1 else []
-        lines.append(
-            " | ".join([case.name, *(f"{count:.2f}" for count in counts.values()), *(f"{it:.3f}" for it in ratio)])
-        )
-    return "\n".join(lines)
+            counts.append((all_of_them - first) / SECONDS / 1e6)
+        ratios = [f"{counts[1] / counts[0]:.3f}"] if len(counts) > 1 else []
+        lines.append([case.name, *(f"{count:.2f}" for count in counts), *ratios])
+    return "\n".join(" | ".join(line) for line in lines)
