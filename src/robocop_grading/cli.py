@@ -3,6 +3,7 @@
 import argparse
 import os
 import sys
+import traceback
 import zlib
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from robocop_hosting import tree
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
+from . import faults
 from .errors import GradingError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
@@ -121,6 +123,12 @@ def _plan(args: argparse.Namespace, share: Path) -> Plan:
     return load(file, args.seed).restricted(args.only)
 
 
+def _kept_traceback(args: argparse.Namespace) -> Path:
+    """The path of a file in the report's folder, to which the traceback of the present exception is written."""
+    folder = Path(args.report or places()[0] / "reports" / Path(os.path.realpath(args.path)).stem)
+    return faults.keep([traceback.format_exc()], make_report_folder(folder))
+
+
 def main() -> None:
     """Exit status 0: every check passed; 1: one failed, or nothing can be graded; 3: no grade; 130: interrupted."""
     args = arguments()
@@ -155,6 +163,7 @@ def main() -> None:
         sys.exit(INTERRUPTED)
     except Exception as error:  # the grader failed on this submission
         print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MAX_SHOWN]}", file=sys.stderr)
+        print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
         sys.exit(1)
     print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)
     print(as_text(grade, {script.part: script.next_step for script in submission.scripts}))

@@ -1,24 +1,26 @@
 """Applies the checks of a plan to records: each check gets an outcome, points and a reason."""
 
 import enum
-import re
 from dataclasses import dataclass, replace
-from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
+from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from .checks import CHECKS, Failed, NotReached, Passed, Verdict
 from .checks.bridge import about_pending
-from .checks.topic_types import wrong_type
+from .checks.topic_use import wrong_type
+from .checks.verdict import Kind
+from .faults import Faults
 from .plan import CheckPlan, Plan
+from .reasons import Reasons, first_reasons
 from .record import Record
 from .texts import sentences
 
-INCOMPLETE = "an incomplete one"
 FIRST = "action_server"  # the check without which no other one of a server is reached
 ALIVE = "stays_alive"
 NOT_STARTED = "the server did not start"
+NOT_JUDGED = "the grader failed when it judged this"
+NOT_EXPLAINED = "The grader failed when it looked for the cause"
 PROGRAMS = "in a grading, the programs that a node starts find no ROS master; rospy can do the same in the node itself"
 TRUTH = "; the position comes from /odom, as on a real robot"
-NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
 class Outcome(enum.Enum):
@@ -56,7 +58,10 @@ class CheckResult:
         if failure is None:
             return f"{self.outcome.value}: {self.why}" if self.why else self.outcome.value
         place = f"at {failure.time:.1f} s of scenario {self.scenario}"
-        return f"failed: {sentences(failure.cause)} Expected {failure.expected}, got {failure.seen}, {place}"
+        cause = failure.cause
+        if self.follows and failure.kind is not Kind.INCOMPLETE:
+            cause = f'This follows from another failed check: "{CHECKS[self.follows].contract}"'
+        return f"failed: {sentences(cause)} Expected {failure.expected}, got {failure.seen}, {place}"
 
 
 @dataclass(frozen=True)
@@ -89,6 +94,7 @@ class Grade:
     checks: Tuple[CheckResult, ...]
     problems: Tuple[str, ...] = ()
     files: Tuple[str, ...] = ()  # which ones were graded, in words
+    tracebacks: Tuple[str, ...] = ()  # of exceptions in the grader
 
     @property
     def points(self) -> float:
@@ -165,16 +171,24 @@ Records = Mapping[str, Mapping[str, Record]]  # part -> scenario -> record
 def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) -> Grade:
     """Grade the parts that have records; `problems` (part -> text) explains records that are missing."""
     checks: List[CheckResult] = []
+    faults = Faults()
     for part, by_name in records.items():
-        own = [_judge(it, plan, by_name, problems.get(part, "")) for it in plan.checks if it.part == part]
-        checks += _with_reasons(own, by_name)
+        own = [_judge(it, plan, by_name, problems.get(part, ""), faults) for it in plan.checks if it.part == part]
+        checks += faults.tried("what follows from what", own, _with_reasons, own, by_name, faults)
     found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
     for part, by_name in records.items():
-        said = [*_end_of(part, by_name, plan), *about_pending(by_name, plan.limits), *_programs(by_name)]
-        if any(check.outcome is not Outcome.PASSED for check in checks):
-            said += [*_unpublished(by_name), *_wrong_types(by_name, checks)]
+        nothing: List[str] = []
+        said = faults.tried(f"notes about the {part}", nothing, _notes, part, by_name, plan, checks)
         found += [f"{part}: {it}" for it in dict.fromkeys(said)]
-    return Grade(name, tuple(checks), tuple(found))
+    return Grade(name, tuple(checks), (*found, *faults.told), tracebacks=tuple(faults.tracebacks))
+
+
+def _notes(part: str, records: Mapping[str, Record], plan: Plan, checks: Sequence[CheckResult]) -> List[str]:
+    """What to say about a part besides its checks."""
+    said = [*_end_of(part, records, plan), *about_pending(records, plan.limits), *_programs(records)]
+    if any(check.outcome is not Outcome.PASSED for check in checks):
+        said += [*_unpublished(records), *_wrong_types(records, checks)]
+    return said
 
 
 def _programs(records: Mapping[str, Record]) -> List[str]:
@@ -211,65 +225,34 @@ def _wrong_types(records: Mapping[str, Record], checks: Sequence[CheckResult]) -
     return [it for it in wrong if it not in said]
 
 
-def without_figures(text: str) -> str:
-    """The text without its figures: causes that differ only in figures are the same."""
-    return NUMBER.sub("#", text)
+def _with_reasons(results: List[CheckResult], records: Mapping[str, Record], faults: Faults) -> List[CheckResult]:
+    """One part's results, each of which names the check with which its failure began."""
+    failed = {result.name: result for result in results if result.failure is not None}
+    failures = {name: it.failure for name, it in failed.items() if it.failure is not None}
+    where = {name: records[it.scenario] for name, it in failed.items() if it.scenario in records}
+    table = Reasons(failures, where, faults)
+    first = first_reasons({it.name: table.of(it.name) for it in results if it.outcome is not Outcome.PASSED})
+    return [replace(it, follows="" if first.get(it.name, it.name) == it.name else first[it.name]) for it in results]
 
 
-def _with_reasons(results: List[CheckResult], records: Mapping[str, Record]) -> List[CheckResult]:
-    """One part's results; each that has no cause of its own gets the failure that it follows from, or is blocked by."""
-    failed = {result.name: (result.failure, result.scenario) for result in results if result.failure is not None}
-    causes = {name: without_figures(failure.cause) for name, (failure, _) in failed.items()}
-    reasons = {name: _reason(name, failed, records) for name in failed}
-    first: Dict[str, str] = {}  # by cause
-    for name, reason in reasons.items():
-        if reason == name:
-            first.setdefault(causes[name], name)
-    explained = []
-    for result in results:
-        if result.failure is not None:
-            reason = first[causes[reasons[result.name]]]
-            if reason != result.name:
-                cause = f'This follows from another failed check: "{CHECKS[reason].contract}"'
-                if result.failure.seen == INCOMPLETE:
-                    cause = result.failure.cause
-                result = replace(result, failure=replace(result.failure, cause=cause), follows=reason)
-        elif result.outcome is Outcome.NOT_REACHED:
-            needs = (FIRST,) if result.why == NOT_STARTED else CHECKS[result.name].needs
-            blocking = next((name for name in needs if name in failed), "")
-            result = replace(result, follows=blocking and first[causes[reasons[blocking]]])
-        explained.append(result)
-    return explained
-
-
-def _reason(name: str, failed: Mapping[str, Tuple[Failed, str]], records: Mapping[str, Record]) -> str:
-    """The check whose failure is the first reason."""
-    chain = [name]
-    while True:
-        failure, scenario = failed[chain[-1]]
-        for after in CHECKS[chain[-1]].after:
-            possible = after.check in failed and after.check not in chain and scenario in records
-            if possible and after.explains(records[scenario], failure, failed[after.check][0]):
-                chain.append(after.check)
-                break
-        else:
-            return chain[-1]
-
-
-def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str) -> CheckResult:
+def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str, faults: Faults) -> CheckResult:
     """A check fails if it fails in one scenario, and passes if it passes in at least one."""
     judged, contract = CHECKS[check.name], CHECKS[check.name].contract
     result = CheckResult(check.name, check.part, contract, Outcome.NOT_REACHED, 0.0, check.points, check.extra)
     for name in check.scenarios:
         verdict: Verdict = NotReached(NOT_STARTED)
+        what = f"{check.name} in scenario {name}"
         if name in records:
-            verdict = judged(records[name], plan.limits)
+            unjudged: Verdict = NotReached(NOT_JUDGED)
+            verdict = faults.tried(what, unjudged, judged, records[name], plan.limits)
             result = replace(result, scenario=result.scenario or name)
         elif problem:
-            verdict = Failed("a complete scenario", INCOMPLETE, 0.0, problem)
+            verdict = Failed("a complete scenario", "an incomplete one", 0.0, problem, Kind.INCOMPLETE)
         if isinstance(verdict, Failed):
             if judged.explain and name in records:
-                verdict = judged.explain(records, [it for it in check.scenarios if it in records], verdict)
+                unexplained = replace(verdict, cause=sentences(verdict.cause, NOT_EXPLAINED))
+                examined = [it for it in check.scenarios if it in records]
+                verdict = faults.tried(f"the cause of {what}", unexplained, judged.explain, records, examined, verdict)
             return replace(result, outcome=Outcome.FAILED, points=0.0, scenario=name, failure=verdict, why="")
         if isinstance(verdict, Passed):
             result = replace(result, outcome=Outcome.PASSED, points=check.points, why="")

@@ -12,6 +12,7 @@ from playwright.sync_api import Error as PlaywrightError
 from waiting import wait_for
 from web import REACHED, READY, Web
 
+from aro_robocop_goto_as.ros.web.plots import HEIGHT as PLOT
 from aro_robocop_goto_as.web.page import corners_of
 
 pytestmark = [pytest.mark.xdist_group("web page"), pytest.mark.timeout(900)]
@@ -84,6 +85,35 @@ def test_the_room_fills_the_scene_of_a_phone_however_it_is_turned_and_a_tap_besi
         tab.wait_for_text("outside of the walls, nothing was sent")
     assert all(max(abs(x), abs(y)) < 2.5 for x, y in sent())
     assert tab.errors == []
+    tab.close()
+
+
+BUTTON_AT = "([x, y]) => document.elementFromPoint(x, y)?.closest('button')?.innerText.trim()"
+PHONES = (UPRIGHT, TURNED, (390, 664), (750, 340))  # [pixel] the same of an iPhone 12
+
+
+@pytest.mark.slow
+def test_on_a_phone_the_buttons_that_drive_are_in_reach_and_as_large_as_a_finger_and_name_no_keys(web, browser):
+    tab = Tab(browser, web.url, touch=True)
+    tab.wait_for_text(READY)
+    for size in PHONES:
+        tab.turn(size)
+        for label in ("Stop", "Forward", "Left", "Back", "Right"):
+            box = tab.button(label).bounding_box()
+            middle = box["x"] + box["width"] / 2.0, box["y"] + box["height"] / 2.0
+            assert box["height"] >= 44.0 and box["y"] + box["height"] <= size[1]
+            assert tab.page.evaluate(BUTTON_AT, middle) == label
+    tab.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [size for size in PHONES if size[0] < size[1]])
+def test_a_tab_that_is_chosen_on_a_phone_fills_the_panel(web, browser, size):
+    tab = Tab(browser, web.url, size, touch=True)
+    tab.wait_for_text(READY)
+    tab.page.get_by_role("tab", name="Plots").dispatch_event("click")
+    title = tab.page.get_by_text("errors", exact=True)
+    wait_for(lambda: title.bounding_box()["y"] + PLOT < tab.button("Forward").bounding_box()["y"], "the plot is seen")
     tab.close()
 
 

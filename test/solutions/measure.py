@@ -37,7 +37,8 @@ from right_solutions import RIGHT
 from wrong_solutions import WRONG
 
 from aro_robocop_goto_as.errors import RobocopError
-from robocop_grading.judge import Outcome, without_figures
+from robocop_grading.checks.verdict import without_figures
+from robocop_grading.judge import Outcome
 
 BY_NAME = {wrong.name: wrong for wrong in WRONG}
 BASES = ("base_server", "base_bridge", "functions_bang_bang")

@@ -17,13 +17,14 @@ FILLED = 0.94  # share of the scene's width or height
 # The panel is beside the scene, on a phone below it, so that it covers nothing: viser's covers more than half of a
 # phone, and is as narrow there as elsewhere. And viser takes no notice of a press on its canvas that the canvas has
 # captured, as browsers do by themselves for a finger: a tap was no click.
+# A tab that is chosen is scrolled to the top of the panel, so that a low panel shows what is in it.
 STYLE = """<style onload="window.addEventListener(
   'pointerdown', e => e.target.tagName === 'CANVAS' && e.target.releasePointerCapture(e.pointerId), true
-)">
+), window.addEventListener('click', e => e.target.closest('[role=tab]')?.scrollIntoView())">
 @media (max-width: 36em) {
   div:has(> div[style*="max-height: 60%"]) { flex-direction: column; }
   div:has(+ div[style*="max-height: 60%"]) { min-height: 0; }
-  div[style*="max-height: 60%"] { position: static !important; flex: none; max-height: 45% !important; }
+  div[style*="max-height: 60%"] { position: static !important; flex: none; max-height: 50% !important; }
   div[style*="max-height: 60%"], div[style*="max-height: 60%"] div[style*="width: 20em"] { width: 100% !important; }
 }
 </style>"""

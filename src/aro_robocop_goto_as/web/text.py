@@ -2,11 +2,12 @@
 
 import html
 import re
-from typing import Iterable, Mapping, Tuple
+from typing import Iterable, Mapping, Optional, Tuple
 
 MAX_LENGTH = 300  # characters of any one name or message
 STYLE = "padding:0 0.8em 0.5em;font-size:0.85em;overflow-wrap:anywhere"
 GOAL = r"goal x \S+ y \S+(?: in \S+)?"
+POSITION = re.compile(r"\bgoal x (-?\d+\.\d+) y (-?\d+\.\d+) in ")
 OFF = re.compile(rf"([\d.]+) m from the {GOAL} after ([\d.]+ s)")
 STOPPED = re.compile(rf"{GOAL} stopped after ([\d.]+ s): (.*)")
 OBSTACLE = re.compile(r"(OBSTACLE: )obstacle ([\d.]+ m ahead)(?: \(limit [\d.]+ m\))?")
@@ -33,6 +34,12 @@ def short(message: str) -> str:
     message = OFF.sub(lambda found: f"{float(found[1]):.2f} m off, {found[2]}", message)
     message = STOPPED.sub(r"\2, \1", message)
     return OBSTACLE.sub(r"\1\2", message).replace("; ", ", ")
+
+
+def goal_in(message: str) -> Optional[Tuple[float, float]]:
+    """The goal's position [m] that a message of this package's server names; None if it names none."""
+    found = POSITION.search(message)
+    return None if found is None else (float(found[1]), float(found[2]))
 
 
 def table(rows: Iterable[Tuple[str, str]]) -> str:

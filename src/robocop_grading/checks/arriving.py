@@ -15,22 +15,21 @@ from ..record import (
     samples_between,
     wrapped,
 )
-from .consequences import ENDING, ITERATION, SUCCESS_LATE, alike
+from .consequences import ITERATION
 from .endings import of_goals, success_too_far, wrong_ending
 from .turning import MIN_SPEED
-from .verdict import After, Failed, NotReached, Verdict, check
+from .verdict import Failed, Kind, NotReached, Verdict, check
 
 LATE = 0.22  # [s] from the true arrival to the success: a loop's period, one of odometry and one of the recording
 LATE_AT_REST = 1.0  # [s] likewise of a robot that stands at the goal meanwhile
 LARGE_TURN = 0.5  # [rad] of a robot at the goal
 AT_ONCE = 2.0  # [s] from a goal that is reached already to its success
-LONG_TURN = "a long turn"
 END_THERE = f"end the goal as soon as position_error is below {GOAL_RADIUS:g} m"
 WAITS = f"The robot stands at the goal, but the result comes later: {END_THERE}"
 TURNS = f"The robot turns at the goal: {END_THERE}"
 
 
-@check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
+@check("track")
 def reaches_goal(record: Record, limits: Limits) -> Verdict:
     """The goal succeeds when the robot is closer than 0.1 m, and not before."""
     return of_goals(
@@ -56,7 +55,7 @@ def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Fa
             if end - reached <= (LATE_AT_REST if cause == WAITS else LATE) or not exact:
                 return None
             seen = f"success {end - reached:.2f} s later, {least:.2f} m from the goal"
-            return Failed(f"success at {GOAL_RADIUS:g} m", seen, reached, cause, SUCCESS_LATE, goal)
+            return Failed(f"success at {GOAL_RADIUS:g} m", seen, reached, cause, Kind.SUCCESS_LATE, goal)
     return None
 
 
@@ -79,11 +78,7 @@ def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Lim
     )
 
 
-SWERVES = After("drives_straight", kind=LONG_TURN)
-OTHER_TURN = After("turns_to_goal", kind=LONG_TURN)
-
-
-@check("track", after=(*ENDING, SWERVES, OTHER_TURN, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))
+@check("track")
 def goal_behind(record: Record, limits: Limits) -> Verdict:
     """Goals behind the robot are reached by the shorter turn, even where the heading wraps from pi to -pi."""
     verdict = of_goals(record, lambda goal: _wrong_success(record, goal, limits) or _long_turn(record, goal))
@@ -105,16 +100,16 @@ def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
         "The robot turns much more than it needs to: does it turn by the sign of a wrapped angle_error, and does "
         "it stop turning in time?"
     )
-    return Failed(wanted, seen, goal.time, cause, LONG_TURN, goal)
+    return Failed(wanted, seen, goal.time, cause, Kind.LONG_TURN, goal)
 
 
-@check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
+@check("track")
 def far_goal(record: Record, limits: Limits) -> Verdict:
     """A goal several metres away is reached."""
     return reaches_goal(record, limits)
 
 
-@check("track", after=ENDING, needs=("reaches_goal", "stays_alive"))
+@check("track")
 def already_there(record: Record, limits: Limits) -> Verdict:
     """A goal closer than 0.1 m succeeds at once, and the robot stays where it is."""
     return of_goals(
@@ -131,6 +126,6 @@ def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
         return None
     seen = f"a result after {end - goal.time:.1f} s and {moved:.2f} m of motion"
     if moved <= 0.05:
-        return Failed("success at once", seen, goal.time, WAITS, SUCCESS_LATE, goal)
+        return Failed("success at once", seen, goal.time, WAITS, Kind.SUCCESS_LATE, goal)
     cause = f"position_error is below {GOAL_RADIUS:g} m from the start: check it before moving"
-    return Failed("success at once", seen, goal.time, cause)
+    return Failed("success at once", seen, goal.time, cause, Kind.MOVES_FIRST, goal)

@@ -7,25 +7,19 @@ from typing import List, Mapping, Optional, Sequence
 from ..handout import Limits
 from ..record import PREEMPTED, Click, Goal, Record
 from . import bridge_causes as causes
-from .bridge_reports import NO_REPORT, UNTRUE, wrong_reports
-from .consequences import alike
+from .bridge_reports import wrong_reports
 from .node_lifetime import no_exception, stays_alive
-from .topic_types import wrong_type
-from .verdict import PASSED, After, Failed, NotReached, Verdict, check
+from .topic_use import wrong_type
+from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
-MISSING, POSITION, NOT_CANCELLED = "no goal", "another position", "not cancelled"  # kinds of failures
-
-NEEDS = "bridge_alive", "forwards_goal"
-
-CRASH = After("bridge_alive", when=lambda _record, failure, _earlier: failure.kind in (MISSING, NO_REPORT))
 
 
 def _goals_after(record: Record, click: Click, until: float = math.inf) -> List[Goal]:
     return [goal for goal in record.goals if click.time - 1e-6 <= goal.time <= until]
 
 
-@check("track", after=(CRASH,))
+@check("track")
 def forwards_goal(record: Record, limits: Limits) -> Verdict:
     """A 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position."""
     if not record.clicks:
@@ -34,24 +28,24 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
     goals = _goals_after(record, click)
     wanted = f"x {click.x:g} y {click.y:g}"
     if not goals:
-        return Failed(f"a goal at {wanted}", "no goal", click.time, causes.missing_connection(record), MISSING)
+        return Failed(f"a goal at {wanted}", "no goal", click.time, causes.missing_connection(record), Kind.NO_GOAL)
     goal = goals[-1]
     if not causes.distance(goal, click.x, click.y) <= causes.POSITION_TOLERANCE:  # this way round NaN fails, too
         seen = f"x {goal.x:.2f} y {goal.y:.2f}"
-        return Failed(wanted, seen, goal.time, causes.other_position(click, goal), POSITION)
+        return Failed(wanted, seen, goal.time, causes.other_position(click, goal), Kind.OTHER_POSITION)
     if len(goals) > 1:
         return Failed("one goal", f"{len(goals)} goals", goals[1].time, "The click is sent more than once")
     return PASSED
 
 
-@check("track", after=(CRASH,), needs=NEEDS)
+@check("track")
 def reports_status(record: Record, limits: Limits) -> Verdict:
     """A timer reports the status of the action server periodically."""
     if "watching" not in record.marks:
         return NotReached("the bridge did not get this far")
     problem = wrong_reports(record, limits)
     connects = causes.has_client(record) and not wrong_type(record, *causes.ACTION_TOPICS)
-    if problem is not None and problem.kind == NO_REPORT and not connects:
+    if problem is not None and problem.kind is Kind.NO_REPORT and not connects:
         return NotReached(causes.unconnected(record))  # it may wait for the server before it creates its timer
     return problem or PASSED
 
@@ -72,7 +66,7 @@ def _explained(records: Mapping[str, Record], names: Sequence[str], failure: Fai
     return replace(failure, cause=cause)
 
 
-@check("track", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS, explain=_explained)
+@check("track", explain=_explained)
 def cancels_older(record: Record, limits: Limits) -> Verdict:
     """A newer 2D Nav Goal cancels the older goal and is then sent itself."""
     if len(record.clicks) < 2:
@@ -81,12 +75,13 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     goals = _goals_after(record, click)
     old = [goal for goal in _goals_after(record, before) if goal not in goals]
     if not old:
-        return Failed(f"a goal at x {before.x:g} y {before.y:g}", "no goal", before.time, causes.NOT_FORWARDED, MISSING)
+        wanted = f"a goal at x {before.x:g} y {before.y:g}"
+        return Failed(wanted, "no goal", before.time, causes.NOT_FORWARDED, Kind.NO_GOAL)
     older, newer = old[-1], [goal for goal in goals if goal.id != old[-1].id]
     cancelled = {change.id for change in record.statuses if change.status == PREEMPTED}
     if not newer:
         cause = causes.CANCELLED_ONLY if older.id in cancelled else causes.NO_NEWER_GOAL
-        return Failed("the newer goal", "no goal", click.time, cause, MISSING)
+        return Failed("the newer goal", "no goal", click.time, cause, Kind.NO_GOAL)
     if (
         causes.distance(older, before.x, before.y)
         <= causes.POSITION_TOLERANCE
@@ -96,7 +91,7 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
         same = causes.distance(older, x, y) <= causes.POSITION_TOLERANCE
         cause = causes.OLDER_POSITION if same else causes.other_position(click, newer[-1])
         wanted, seen = f"x {click.x:g} y {click.y:g}", f"x {x:.2f} y {y:.2f}"
-        return Failed(wanted, seen, newer[-1].time, cause, POSITION)
+        return Failed(wanted, seen, newer[-1].time, cause, Kind.OTHER_POSITION)
     if newer[-1].id in cancelled:
         seen = "one for both" if older.id in cancelled else "one for the newer goal"
         wanted = "a cancel request for the older goal only"
@@ -105,11 +100,11 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
         wanted = "a cancel request for the older goal"
         requests = [cancel for cancel in record.cancels if cancel.time >= click.time - 1e-6]
         seen = "one for another goal" if requests else "none"
-        return Failed(wanted, seen, click.time, causes.not_cancelled(requests, older), NOT_CANCELLED)
+        return Failed(wanted, seen, click.time, causes.not_cancelled(requests, older), Kind.NOT_CANCELLED)
     return PASSED
 
 
-@check("track", after=(CRASH, After("forwards_goal", alike)), needs=NEEDS)
+@check("track")
 def waits_for_server(record: Record, limits: Limits) -> Verdict:
     """A bridge that is started before the server waits for it, and then works."""
     if record.name == "no_server":
@@ -119,7 +114,7 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
     if not causes.has_client(record):
         return NotReached(causes.unconnected(record))
     clicked, wanted = record.marks.get("clicked", 0.0), "a goal once the server is running"
-    return Failed(wanted, "no goal", clicked, causes.WAITS_FOR_NO_SERVER, MISSING)
+    return Failed(wanted, "no goal", clicked, causes.WAITS_FOR_NO_SERVER, Kind.NO_GOAL)
 
 
 @check("track")
@@ -137,12 +132,7 @@ def _crash(record: Record, limits: Limits) -> Optional[Failed]:
     return None
 
 
-@check(
-    "track",
-    after=(CRASH, After("forwards_goal", alike), After("cancels_older", alike)),
-    needs=NEEDS,
-    explain=_explained,
-)
+@check("track", explain=_explained)
 def goal_frame(record: Record, limits: Limits) -> Verdict:
     """A goal given in another frame is transformed to odom (the handout's closing question)."""
     if not record.clicks:
@@ -159,7 +149,7 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
                 if causes.looks_up_too_early(record)
                 else causes.NOT_FORWARDED
             )
-            return Failed(f"a goal for the click in {click.frame}", "no goal", click.time, cause, MISSING)
+            return Failed(f"a goal for the click in {click.frame}", "no goal", click.time, cause, Kind.NO_GOAL)
         goal = goals[-1]
         if not causes.distance(goal, click.odom_x, click.odom_y) <= FRAME_TOLERANCE:
             cause = (
@@ -169,7 +159,7 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
                 else "The transform is wrong"
             )
             wanted = f"x {click.odom_x:.2f} y {click.odom_y:.2f} in odom"
-            return Failed(wanted, f"x {goal.x:.2f} y {goal.y:.2f}", goal.time, cause, POSITION)
+            return Failed(wanted, f"x {goal.x:.2f} y {goal.y:.2f}", goal.time, cause, Kind.OTHER_POSITION)
     return PASSED
 
 
@@ -180,10 +170,10 @@ def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
         return []
     if "click" in records and reports_status(records["click"], limits) is PASSED:
         verdict = reports_status(record, limits)
-        if isinstance(verdict, Failed) and verdict.kind in (NO_REPORT, UNTRUE):
-            found.append(causes.REPORTS_STOP if verdict.kind == NO_REPORT else verdict.cause)
+        if isinstance(verdict, Failed) and verdict.kind in (Kind.NO_REPORT, Kind.UNTRUE_REPORT):
+            found.append(causes.REPORTS_STOP if verdict.kind is Kind.NO_REPORT else verdict.cause)
     if "replace" in records and cancels_older(records["replace"], limits) is PASSED:
         verdict = cancels_older(record, limits)
-        if isinstance(verdict, Failed) and verdict.kind == NOT_CANCELLED:
+        if isinstance(verdict, Failed) and verdict.kind is Kind.NOT_CANCELLED:
             found.append(causes.NO_OLDER_GOAL_SEEN)
     return found

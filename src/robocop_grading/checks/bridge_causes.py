@@ -8,7 +8,7 @@ from ..handout import ACTION, CLICKS
 from ..record import Cancel, Click, Goal, Record
 from .node_lifetime import closest
 from .output import NOT_IMPORTED, UNKNOWN_TYPE, logged
-from .topic_types import wrong_type
+from .topic_use import wrong_type
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 TOO_EARLY = re.compile("extrapolation.{1,40}into the future")  # in tf2's words

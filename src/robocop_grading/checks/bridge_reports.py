@@ -5,9 +5,8 @@ from typing import List, NamedTuple, Optional, Set, Tuple
 
 from ..handout import Limits
 from ..record import ACTIVE, LOST, PENDING, STATUS_NAMES, SUCCEEDED, Line, Record
-from .verdict import Failed
+from .verdict import Failed, Kind
 
-NO_REPORT, EMPTY, UNTRUE = "no report", "empty report", "untrue report"  # kinds of failures
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
 STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b", re.IGNORECASE)
 NUMBER = re.compile(r"\b(?:state|status)\b\D{0,5}\b([0-9])\b|^published on \S+: ([0-9])$", re.IGNORECASE)
@@ -72,9 +71,9 @@ def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
         empty = next(line for line in lines if _says_nothing(line))
         uncalled = UNCALLED.search(_content(empty))
         cause = UNCALLED_REPORT if uncalled else f'{SAYS_NOTHING}, as in "{_content(empty)}": {REPORT}'
-        return Failed(wanted, f"{count}", empty.time, cause, EMPTY)
+        return Failed(wanted, f"{count}", empty.time, cause, Kind.EMPTY_REPORT)
     cause = REPORTED_ONCE if count else NOTHING_REPORTED
-    return Failed(wanted, f"{count}", start, cause, NO_REPORT)
+    return Failed(wanted, f"{count}", start, cause, Kind.NO_REPORT)
 
 
 class Report(NamedTuple):
@@ -129,7 +128,7 @@ def _untrue(record: Record) -> Optional[Failed]:
     if len(several) > 1 and len(several) > SOMETIMES * len(reports):
         first = several[0]
         seen = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
-        return Failed(STATUS_NAMES[first.true], seen, first.time, SEVERAL_STATES, UNTRUE)
+        return Failed(STATUS_NAMES[first.true], seen, first.time, SEVERAL_STATES, Kind.UNTRUE_REPORT)
     wrong = [] if _is_client_state(reports) else [report for report in reports if not report.is_true]
     true_states = dict.fromkeys(report.true for report in reports)
     for true in true_states:
@@ -142,5 +141,5 @@ def _untrue(record: Record) -> Optional[Failed]:
             cause = f"The bridge reports {names} while the goal is {STATUS_NAMES[true]}: {REPORT}"
             if len(true_states) > 1 and len(shifts) == 1:
                 cause = f"The names of the states are shifted: {names} is reported for {STATUS_NAMES[true]}; {NUMBERS}"
-            return Failed(STATUS_NAMES[true], names, first.time, cause, UNTRUE)
+            return Failed(STATUS_NAMES[true], names, first.time, cause, Kind.UNTRUE_REPORT)
     return None

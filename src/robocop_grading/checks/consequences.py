@@ -1,46 +1,43 @@
-"""Whether a failure follows from another check's failure: decided by what happened, and by what the server reported."""
+"""What follows from what: one table, whose conditions look at what happened and at what the server reported."""
 
-from typing import Mapping, Pattern
+from typing import Callable, NamedTuple, Optional
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
-from ..record import STATUS_NAMES, SUCCEEDED, Feedback, Goal, Record, active_until, feedback_of, results_of
-from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, last_error, logged
-from .verdict import After, Failed
+from ..record import Feedback, Goal, Record, active_until, errors_at, feedback_of, results_of, samples_between
+from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, logged
+from .verdict import Failed, Kind, without_figures
 
-# Kinds of failures.
-NO_RESULT = "no result"
-SUCCESS = "success"  # too far away from the goal
-SUCCESS_LATE = "late success"
-LATE = "late"  # a goal that ended too late after a request to end
-NOT_RESET = "not reset"  # what an earlier goal has left behind
-MOVES_FIRST = "moves first"  # before the errors and the distance are known
-TOO_EARLY = "too early"  # an abort too far away from the obstacle
-
-NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and driving are right
 ENOUGH = 4  # fewer commands show nothing
 MAX_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
 BELIEVED = 1.2 * GOAL_RADIUS  # [m]
-MIN_DELAY = 1.0  # [s] a callback that waits once at the start makes messages wait for less
 ITERATION = 0.15  # [s] of a server's loop, with a tick of the recording
 
 
 def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
     """Return whether both failures are of the same kind."""
-    return bool(failure.kind) and failure.kind == earlier.kind
+    return failure.kind is not None and failure.kind is earlier.kind
 
 
-def logged_cause(record: Record, end: float) -> str:
-    """What the log says about why a goal ended wrongly at a time [s]; empty if it says nothing."""
-    if logged(record, EXCEPTION_LOGGED, end):
-        return f"An exception was raised: {last_error(record, end)}"
-    return NO_STATE if logged(record, NO_STATE_LOGGED, end) else ""
+def same_cause(_record: Record, failure: Failed, earlier: Failed) -> bool:
+    """Return whether both failures have the same cause, in which only figures differ."""
+    return without_figures(failure.cause) == without_figures(earlier.cause)
 
 
 def end_of(record: Record, failure: Failed) -> float:
     """The time [s] until which an event can be a failure's reason: when its goal ended, or its own time if later."""
     end = active_until(record, failure.goal) if failure.goal else failure.time
     return max(failure.time, end)
+
+
+def starting(record: Record, _failure: Failed, _earlier: Failed) -> bool:
+    """Return whether the node failed when it started."""
+    return record.name == "start"
+
+
+def not_killed(record: Record, _failure: Failed, _earlier: Failed) -> bool:
+    """Return whether nothing other than an exception ended the node."""
+    return not any(death.reason or death.is_unexplained for death in record.deaths)
 
 
 def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -50,27 +47,12 @@ def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether an exception was logged before a goal ended otherwise than it should."""
-    return bool(failure.kind) and logged(record, EXCEPTION_LOGGED, end_of(record, failure))
+    return failure.kind is not None and logged(record, EXCEPTION_LOGGED, end_of(record, failure))
 
 
-def unpublished(records: Mapping[str, Record], name: Pattern[str]) -> str:
-    """The first topic with such a name that the node subscribes to and nobody publishes; empty if there is none."""
-    topics = [topic for record in records.values() for topic in record.unpublished]
-    return next(filter(name.search, topics), "")
-
-
-def late(records: Mapping[str, Record], name: Pattern[str], what: str) -> str:
-    """A sentence: data is old because the callback of a topic with such a name is too slow; empty if no callback is."""
-    delays = [(delay, topic) for record in records.values() for topic, delay in record.delays if name.search(topic)]
-    delays = [it for it in delays if it[0] >= MIN_DELAY]
-    if not delays:
-        return ""
-    delay, topic = max(delays)
-    return (
-        f"{what}: messages on {topic} waited up to {delay:.3g} s for their callback, because it takes longer than the "
-        "time from one message to the next. It has to store what it needs and return at once, without a sleep or a "
-        "long calculation"
-    )
+def none_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Return whether actionlib had to set a goal's terminal state."""
+    return logged(record, NO_STATE_LOGGED, failure.time)
 
 
 def silent(record: Record, goal: Goal) -> bool:
@@ -81,7 +63,7 @@ def silent(record: Record, goal: Goal) -> bool:
 
 def nothing_came(record: Record, failure: Failed, earlier: Failed) -> bool:
     """Return whether nothing came from the server after it got the goal, and the earlier failure says so, too."""
-    return failure.goal is not None and silent(record, failure.goal) and earlier.kind == NO_RESULT
+    return failure.goal is not None and silent(record, failure.goal) and earlier.kind is Kind.NO_RESULT
 
 
 def died_before(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -89,9 +71,12 @@ def died_before(record: Record, failure: Failed, _earlier: Failed) -> bool:
     return bool(record.deaths) and failure.goal is not None and silent(record, failure.goal)
 
 
-def working(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Return whether the server was working on the goal."""
-    return failure.goal is not None and not silent(record, failure.goal)
+def astray(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Return whether the server was working on the goal, and the robot never came to it."""
+    goal = failure.goal
+    if goal is None or silent(record, goal):
+        return False
+    return all(errors_at(it, goal)[0] >= GOAL_RADIUS for it in samples_between(record, goal.time, failure.time))
 
 
 def believed(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -113,7 +98,7 @@ def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
     If that angle is wrong, the motion is wrong because of it.
     """
     goal = failure.goal
-    if goal is None or failure.kind == SUCCESS:
+    if goal is None or failure.kind is Kind.TOO_FAR:
         return False
     own = feedback_of(record, goal)
     end = active_until(record, goal)
@@ -135,20 +120,93 @@ def _fits(own: Feedback, v: float, w: float) -> bool:
     return v > 0.0 or (abs(own.angle_error) > HEADING_TOLERANCE - MARGIN and turning)
 
 
-EXCEPTION = After("no_exception", raised)
-AT_FIRST = After("already_there", kind=MOVES_FIRST)
-MISLED = After("feedback_angle", misled)
-# What every goal's ending depends on.
-ENDING = (
-    EXCEPTION,
-    After("stays_alive", died, NO_RESULT),
-    After("feedback_rate", unaware, SUCCESS_LATE),
-    After("feedback_position", believed, SUCCESS),
-    After("feedback_position", believed, STATUS_NAMES[SUCCEEDED]),
-    After("feedback_position", misled, NO_RESULT),
-    After("feedback_position", misled, SUCCESS_LATE),
-    MISLED,
-    After("turns_to_goal", working, NO_RESULT),
-    After("drives_straight", working, NO_RESULT),
-    After("reaches_goal", alike),
+def too_early_elsewhere(_record: Record, _failure: Failed, earlier: Failed) -> bool:
+    """Return whether the server also aborts too far away from an obstacle ahead."""
+    return earlier.kind is Kind.TOO_EARLY
+
+
+def at_wall(_record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Return whether the goal had to be aborted."""
+    return failure.goal is not None and failure.goal.ends == "ABORTED"
+
+
+def kept(record: Record, failure: Failed, earlier: Failed) -> bool:
+    """Return whether the feedback is wrong from a later goal on, as a server keeps what an earlier one has set."""
+    return earlier.kind is Kind.NOT_RESET and any(failure.time > goal.time for goal in record.goals[1:])
+
+
+class Row(NamedTuple):
+    """A failure of the later check that is of this kind follows from the earlier check's failure, if `when` holds."""
+
+    later: str  # names of checks; empty: every check
+    kind: Optional[Kind]  # None: any kind, of a scenario that was recorded
+    earlier: str  # name of a check; empty: each check that comes earlier in the plan
+    when: Optional[Callable[[Record, Failed, Failed], bool]] = None  # the later check's record, and both failures
+
+
+ENDINGS = (
+    "reaches_goal goal_behind far_goal already_there stops_at_obstacle only_ahead_counts odd_scans cancel newer_goal "
+    "next_goal"
+)
+CLICKS = "forwards_goal reports_status cancels_older waits_for_server goal_frame"
+
+# A failure, or a check that is not reached, follows from the first row that applies to it.
+FOLLOWS = (
+    Row("", Kind.INCOMPLETE, "", alike),
+    # The node does not start, raises an exception, or dies.
+    Row("", Kind.NOT_REACHED, "action_server"),
+    Row("no_exception stays_alive", None, "action_server", starting),
+    Row("stays_alive", None, "no_exception", not_killed),
+    Row("next_goal", Kind.NO_ANSWER, "stays_alive"),
+    Row("feedback_rate", None, "stays_alive", died),
+    # Feedback.
+    Row("feedback_angle", Kind.WRONG_POSITION, "feedback_position"),
+    Row("feedback_position feedback_angle", None, "next_goal", kept),
+    # How goals end.
+    Row("only_ahead_counts", Kind.ABORTED, "stops_at_obstacle", too_early_elsewhere),
+    Row(
+        f"{ENDINGS} turns_to_goal success_result failure_result stands_at_end one_ending", None, "no_exception", raised
+    ),
+    Row("success_result failure_result", Kind.NO_MESSAGE, "one_ending", none_set),
+    Row(ENDINGS, Kind.NO_RESULT, "stays_alive", died),
+    Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_rate", unaware),
+    Row(ENDINGS, Kind.TOO_FAR, "feedback_position", believed),
+    Row(ENDINGS, Kind.SUCCEEDED, "feedback_position", believed),
+    Row(ENDINGS, Kind.NO_RESULT, "feedback_position", misled),
+    Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_position", misled),
+    Row(f"{ENDINGS} turns_to_goal drives_straight", None, "feedback_angle", misled),
+    Row(ENDINGS, Kind.NO_RESULT, "turns_to_goal", astray),
+    Row(ENDINGS, Kind.NO_RESULT, "drives_straight", astray),
+    Row(ENDINGS, None, "reaches_goal", alike),
+    Row("feedback_rate turns_to_goal cancel newer_goal", None, "reaches_goal", nothing_came),
+    Row("turns_to_goal", Kind.MOVES_FIRST, "already_there", alike),
+    Row("stops_at_obstacle", Kind.MOVES_FIRST, "already_there", alike),
+    Row("turns_to_goal", None, "stays_alive", died_before),
+    Row("odd_scans", None, "stops_at_obstacle", at_wall),
+    Row("stops_at_obstacle odd_scans", Kind.MOVING, "stands_at_end"),
+    Row("goal_behind", Kind.LONG_TURN, "drives_straight"),
+    Row("goal_behind", Kind.LONG_TURN, "turns_to_goal"),
+    Row("newer_goal", None, "cancel", alike),
+    Row("goal_behind newer_goal", None, "next_goal", alike),
+    Row("next_goal", None, "reaches_goal"),
+    # The bridge.
+    Row(CLICKS, Kind.NO_GOAL, "bridge_alive"),
+    Row(CLICKS, Kind.NO_REPORT, "bridge_alive"),
+    Row("cancels_older waits_for_server goal_frame", None, "forwards_goal", alike),
+    Row("goal_frame", None, "cancels_older", alike),
+    # One mistake is told once.
+    Row("", None, "", same_cause),
+    # What a check needs to be reached.
+    Row("feedback_position feedback_angle", Kind.NOT_REACHED, "feedback_rate"),
+    Row("drives_straight", Kind.NOT_REACHED, "turns_to_goal"),
+    Row("failure_result", Kind.NOT_REACHED, "stops_at_obstacle"),
+    Row(
+        "turns_to_goal drives_straight success_result goal_behind far_goal already_there only_ahead_counts cancel "
+        "newer_goal next_goal stands_at_end one_ending",
+        Kind.NOT_REACHED,
+        "reaches_goal",
+    ),
+    Row(ENDINGS, Kind.NOT_REACHED, "stays_alive"),
+    Row(CLICKS, Kind.NOT_REACHED, "bridge_alive"),
+    Row(CLICKS, Kind.NOT_REACHED, "forwards_goal"),
 )

@@ -19,10 +19,9 @@ from ..record import (
     status_name,
 )
 from ..texts import sentences
-from .consequences import EXCEPTION, NO_RESULT, NO_STATE, NOT_RESET, SUCCESS, logged_cause
-from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged
-from .topic_types import wrong_type
-from .verdict import PASSED, After, Failed, NotReached, Verdict, check
+from .output import NO_STATE, NO_STATE_LOGGED, TWO_STATES_LOGGED, logged_cause
+from .topic_use import wrong_type
+from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check, ended
 
 TWO_STATES = "The goal got two terminal states"
 NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
@@ -48,7 +47,7 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
         problem = record.problem or "the goal got no terminal state and no result"
         other_type = wrong_type(record, "/odom", "/scan", "/cmd_vel")
         cause = sentences(_collision(record, goal, last), problem[:1].upper() + problem[1:], other_type)
-        return Failed(status_name(wanted), NO_RESULT, last, cause, NO_RESULT, goal)
+        return Failed(status_name(wanted), "no result", last, cause, Kind.NO_RESULT, goal)
     result = results[0]
     if result.status == wanted:
         return None
@@ -62,9 +61,8 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     cause = _wrong_state(record, goal, result.status, wanted)
     if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):  # odometry continued to advance
         cause = wrong_type(record, "/scan") or narrow_obstacle(record) or UNNOTICED
-    state = status_name(result.status)
-    seen = state + (f": {result.message}" if result.message else "")
-    return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), state, goal)
+    seen = status_name(result.status) + (f": {result.message}" if result.message else "")
+    return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), ended(result.status), goal)
 
 
 def of_goals(record: Record, problem: Callable[[Goal], Optional[Failed]]) -> Verdict:
@@ -135,12 +133,12 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
     if nearest <= limits.reached:
         return None
     own = [it.position_error for it in feedback_of(record, goal) if it.time <= result.time]
-    kind, cause = SUCCESS, TOO_FAR
+    kind, cause = Kind.TOO_FAR, TOO_FAR
     if own and own[-1] < GOAL_RADIUS:
         cause = f"The server takes the robot to be at the goal: its own position_error is {own[-1]:.3f} m"
     if _at_once(record, goal) and any(_took_longer(record, it) for it in record.goals if it.time < goal.time):
-        kind, cause = NOT_RESET, "What an earlier goal has changed is not reset when a goal begins"
-    seen = f"{SUCCESS} {nearest:.2f} m away"
+        kind, cause = Kind.NOT_RESET, "What an earlier goal has changed is not reset when a goal begins"
+    seen = f"success {nearest:.2f} m away"
     return Failed(f"success within {GOAL_RADIUS:g} m", seen, result.time, cause, kind, goal)
 
 
@@ -153,21 +151,13 @@ def _took_longer(record: Record, goal: Goal) -> bool:
     return bool(results_of(record, goal)) and not _at_once(record, goal)
 
 
-EMPTY = "an empty message"
-MOVING = "moving"
-RESULT = (
-    EXCEPTION,
-    After("one_ending", lambda record, it, _: it.seen == EMPTY and logged(record, NO_STATE_LOGGED, it.time)),
-)
-
-
-@check("states", after=RESULT, needs=("reaches_goal",))
+@check("states")
 def success_result(record: Record, limits: Limits) -> Verdict:
     """The result of a reached goal has success true and a message."""
     return _result(record, SUCCEEDED, True)
 
 
-@check("states", after=RESULT, needs=("stops_at_obstacle",))
+@check("states")
 def failure_result(record: Record, limits: Limits) -> Verdict:
     """The result of an aborted goal has success false and a message."""
     return _result(record, ABORTED, False)
@@ -183,11 +173,11 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
         return Failed(f"success {success}", f"success {result.success}", result.time, cause)
     if not result.message:
         cause = logged_cause(record, result.time) or EMPTY_RESULT
-        return Failed("a message", EMPTY, result.time, cause, EMPTY)
+        return Failed("a message", "an empty message", result.time, cause, Kind.NO_MESSAGE)
     return PASSED
 
 
-@check("speeds", after=(EXCEPTION,), needs=("reaches_goal",))
+@check("speeds")
 def stands_at_end(record: Record, limits: Limits) -> Verdict:
     """The robot stands still after a goal has ended, in any state."""
     judged = False
@@ -203,7 +193,7 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
                 if abs(sample.v) > limits.standing_v or abs(sample.w) > limits.standing_w:
                     seen = f"{sample.v:.2f} m/s and {sample.w:.2f} rad/s"
                     cause = keeps_moving(record, result, sample.time)
-                    return Failed("a robot at rest", seen, sample.time, cause, MOVING, goal)
+                    return Failed("a robot at rest", seen, sample.time, cause, Kind.MOVING, goal)
     return PASSED if judged else NotReached("no goal ended")
 
 
@@ -223,7 +213,7 @@ def keeps_moving(record: Record, result: Result, until: float) -> str:
     )
 
 
-@check("states", after=(EXCEPTION,), needs=("reaches_goal",))
+@check("states")
 def one_ending(record: Record, limits: Limits) -> Verdict:
     """Each goal gets exactly one terminal state, set by the server's own code."""
     judged = False
@@ -238,7 +228,7 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
                 "The goal got two terminal states, as in the handout's example after a cancel: return at once "
                 "after set_succeeded(), set_aborted() and set_preempted()"
             )
-            return Failed("one terminal state", line.text[:160], line.time, cause, TWO_STATES)
+            return Failed("one terminal state", line.text[:160], line.time, cause, Kind.TWO_STATES)
         if NO_STATE_LOGGED.search(line.text):
             return Failed("a terminal state", "none was set", line.time, NO_STATE)
     for goal in record.goals:

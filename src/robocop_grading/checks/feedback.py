@@ -9,10 +9,10 @@ import numpy as np
 
 from ..handout import GOAL_RADIUS, Limits
 from ..record import ERRORS, Goal, Record, active_until, errors_at, feedback_of, samples_between, wrapped
-from .consequences import NOT_RESET, died, late, nothing_came, unpublished
 from .feedback_causes import OTHERWISE, TOLERANCES, UNITS, likely_cause, longest, misses
 from .feedback_hypotheses import ANGLE, OF_POSITION, POSE_TOPIC, POSITION, UNCHANGED, Pair
-from .verdict import PASSED, After, Failed, NotReached, Verdict, check
+from .topic_use import late, unpublished
+from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
 NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
@@ -34,13 +34,9 @@ TOO_OFTEN = (
 )
 NOT_10_HZ = "Feedback is not sent in each iteration, or the loop's rate is not 10 Hz"
 DIFFERENCE = "the difference of two angles has to be normalized to -pi..pi"
-# Kinds of failures.
-WRONG_POSITION = "of the position"
-UNTRUE = "untrue"
-OLD_POSE = "old pose"
 
 
-@check("errors", after=(After("stays_alive", died), After("reaches_goal", nothing_came)))
+@check("errors")
 def feedback_rate(record: Record, limits: Limits) -> Verdict:
     """While a goal is active, feedback is published about ten times a second."""
     judged = False
@@ -96,8 +92,8 @@ def _wrong(index: int, pairs: Sequence[Pair], tolerance: float) -> List[Pair]:
 def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], failure: Failed) -> Failed:
     """The failure with the causes that fit in all scenarios."""
     of_old_pose = late(records, POSE_TOPIC, "The errors are those of an old pose")
-    if failure.kind != UNTRUE:
-        return replace(failure, cause=of_old_pose) if of_old_pose and failure.kind == OLD_POSE else failure
+    if failure.kind is not Kind.WRONG_ERROR:
+        return replace(failure, cause=of_old_pose) if of_old_pose and failure.kind is Kind.OLD_POSE else failure
     scenarios = [_compared(index, records[name]) for name in names]
     wrong = [pair for pairs in scenarios for pair in _wrong(index, pairs, TOLERANCES[index])]
     cause, found = likely_cause(index, wrong, scenarios)
@@ -107,17 +103,10 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
         cause += "publishes; the position comes from /odom"
     elif of_old_pose and (found & UNCHANGED or cause == OTHERWISE[index]):
         cause = of_old_pose
-    return replace(failure, cause=cause, kind=WRONG_POSITION if found & OF_POSITION else UNTRUE)
+    return replace(failure, cause=cause, kind=Kind.WRONG_POSITION if found & OF_POSITION else Kind.WRONG_ERROR)
 
 
-# Feedback that is wrong from a later goal on, as a server keeps what an earlier one has set.
-KEPT = After(
-    "next_goal",
-    lambda record, it, earlier: earlier.kind == NOT_RESET and any(it.time > goal.time for goal in record.goals[1:]),
-)
-
-
-@check("errors", after=(KEPT,), needs=("feedback_rate",), explain=partial(_explained, POSITION))
+@check("errors", explain=partial(_explained, POSITION))
 def feedback_position(record: Record, limits: Limits) -> Verdict:
     """position_error in the feedback is the distance to the goal."""
     pairs = _compared(POSITION, record)
@@ -126,12 +115,7 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
     return _untrue(POSITION, pairs, limits.position_tolerance) or _old(record, POSITION) or PASSED
 
 
-@check(
-    "errors",
-    after=(After("feedback_position", kind=WRONG_POSITION), KEPT),
-    needs=("feedback_rate",),
-    explain=partial(_explained, ANGLE),
-)
+@check("errors", explain=partial(_explained, ANGLE))
 def feedback_angle(record: Record, limits: Limits) -> Verdict:
     """angle_error in the feedback is the angle from the heading to the goal's direction, within +-pi."""
     pairs = _compared(ANGLE, record)
@@ -163,7 +147,7 @@ def _old(record: Record, index: int) -> Optional[Failed]:
         f"{name} in the feedback is old: calculate it from the newest pose, then publish the feedback, both in the "
         "same iteration, and let callbacks return at once"
     )
-    return Failed(f"the present {name}", seen, record.feedback[0].time, cause, OLD_POSE)
+    return Failed(f"the present {name}", seen, record.feedback[0].time, cause, Kind.OLD_POSE)
 
 
 def _is_shifted(record: Record, index: int) -> bool:
@@ -203,4 +187,4 @@ def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Fai
         return None
     first = wrong[0]
     seen = f"{ERRORS[index]} {first.feedback.errors[index]:.2f}"
-    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, "", UNTRUE)
+    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, "", Kind.WRONG_ERROR)

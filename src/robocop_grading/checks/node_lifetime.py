@@ -6,14 +6,8 @@ from typing import Sequence
 from ..handout import ACTION, ACTION_TYPE, Limits
 from ..record import Death, Record
 from .output import TRACEBACK, UNCAUGHT, first_error, last_error
-from .topic_types import other_action
-from .verdict import PASSED, After, Failed, NotReached, Verdict, check
-
-START = After("action_server", lambda record, *_: record.name == "start")
-# Nothing other than an exception ended the node.
-OWN_DEATH = After(
-    "no_exception", lambda record, *_: not any(death.reason or death.is_unexplained for death in record.deaths)
-)
+from .topic_use import other_action
+from .verdict import PASSED, Failed, NotReached, Verdict, check
 
 
 def closest(name: str, others: Sequence[str]) -> str:
@@ -55,7 +49,7 @@ def _died(cause: str, death: Death, record: Record) -> Failed:
     return Failed("a running node", f"exit status {death.status}", death.time, f"{cause}: {reason}")
 
 
-@check("states", after=(START,))
+@check("states")
 def no_exception(record: Record, limits: Limits) -> Verdict:
     """No callback or thread raises an uncaught exception."""
     for number, line in enumerate(record.lines):
@@ -65,7 +59,7 @@ def no_exception(record: Record, limits: Limits) -> Verdict:
     return PASSED
 
 
-@check("states", after=(START, OWN_DEATH))
+@check("states")
 def stays_alive(record: Record, limits: Limits) -> Verdict:
     """The node keeps running to the end."""
     for death in record.deaths:

@@ -19,10 +19,10 @@ from ..record import (
     samples_between,
 )
 from ..texts import sentences
-from .consequences import AT_FIRST, ENDING, MOVES_FIRST, NO_RESULT, SUCCESS, TOO_EARLY, late, logged_cause, unpublished
-from .endings import MOVING, keeps_moving, narrow_obstacle, of_goals, wrong_ending
-from .output import EXCEPTION_LOGGED, logged
-from .verdict import PASSED, After, Failed, NotReached, Verdict, check
+from .endings import keeps_moving, narrow_obstacle, of_goals, wrong_ending
+from .output import EXCEPTION_LOGGED, logged, logged_cause
+from .topic_use import late, unpublished
+from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
 PAST = 0.5  # share of the way to a goal beside obstacles after which the robot has passed some
@@ -38,13 +38,10 @@ ABORTED_NEAR = (
 )
 
 
-STANDS = After("stands_at_end", kind=MOVING)
-
-
 def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Failed) -> Failed:
     """The failure to notice an obstacle with its cause if no scan can come, or comes late."""
     silent = unpublished(records, SCAN_TOPIC)
-    unnoticed = failure.kind in (STATUS_NAMES[SUCCEEDED], SUCCESS, NO_RESULT, MOVES_FIRST)
+    unnoticed = failure.kind in (Kind.SUCCEEDED, Kind.TOO_FAR, Kind.NO_RESULT, Kind.MOVES_FIRST)
     if silent and unnoticed:
         cause = f"The node subscribes to {silent}, which nobody publishes; the laser's topic is /scan"
         return replace(failure, cause=cause)
@@ -52,7 +49,7 @@ def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Fa
     return replace(failure, cause=of_old_scan) if of_old_scan and (unnoticed or not failure.kind) else failure
 
 
-@check("distances", after=(*ENDING, AT_FIRST, STANDS), needs=("stays_alive",), explain=_explained)
+@check("distances", explain=_explained)
 def stops_at_obstacle(record: Record, limits: Limits) -> Verdict:
     """An obstacle closer than 0.3 m ahead aborts the goal before the robot touches it."""
     if not record.goals:
@@ -73,20 +70,21 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
         return Failed("a stop before the obstacle", "contact", end, cause)
     wanted = f"an abort at {STOP_DISTANCE:g} m"
     if logged(record, EXCEPTION_LOGGED, end):
-        return Failed(wanted, "an exception", end, logged_cause(record, end), "an exception", goal)
+        return Failed(wanted, "an exception", end, logged_cause(record, end), Kind.EXCEPTION, goal)
     clearances = [sample.ahead for sample in samples_between(record, end - 0.25, end)]
     if clearances and min(clearances) > limits.abort_farthest:
         nearest = min(sample.ahead for sample in samples_between(record, goal.time, end))
-        cause, kind = ABORTED_FAR, TOO_EARLY
-        if nearest <= limits.abort_farthest:
-            cause, kind = f"The robot came as near as {nearest:.2f} m to the obstacle, {ABORTED_LATER}", ""
-        return Failed(wanted, f"an abort at {min(clearances):.2f} m", end, cause, kind, goal)
+        seen = f"an abort at {min(clearances):.2f} m"
+        if nearest > limits.abort_farthest:
+            return Failed(wanted, seen, end, ABORTED_FAR, Kind.TOO_EARLY, goal)
+        cause = f"The robot came as near as {nearest:.2f} m to the obstacle, {ABORTED_LATER}"
+        return Failed(wanted, seen, end, cause, goal=goal)
     if clearances and clearances[-1] < limits.abort_nearest:
         cause = narrow_obstacle(record) or _late_cause(record, goal, end, clearances[-1])
         return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause)
     if contact < math.inf:
         cause = keeps_moving(record, results_of(record, goal)[0], contact)
-        return Failed("a stop before the obstacle", "contact", contact, cause, MOVING, goal)
+        return Failed("a stop before the obstacle", "contact", contact, cause, Kind.MOVING, goal)
     return None
 
 
@@ -115,18 +113,10 @@ def _approach(record: Record, goal: Goal) -> Optional[Failed]:
         f"The robot drove towards an obstacle that was {before[-1]:.2f} m ahead from the start: is the threshold "
         f"less than {STOP_DISTANCE:g} m, or is the distance not checked before the robot drives?"
     )
-    return Failed(wanted, seen, goal.time, cause, MOVES_FIRST, goal)
+    return Failed(wanted, seen, goal.time, cause, Kind.MOVES_FIRST, goal)
 
 
-# A goal was aborted without an obstacle near ahead by a server that also aborts too early elsewhere.
-ABORTS_EARLY = After(
-    "stops_at_obstacle", lambda _, failure, earlier: (failure.kind, earlier.kind) == (STATUS_NAMES[ABORTED], TOO_EARLY)
-)
-# A goal that had to be aborted was not, or not rightly.
-AT_WALL = After("stops_at_obstacle", lambda _, failure, __: failure.goal is not None and failure.goal.ends == "ABORTED")
-
-
-@check("distances", after=(ABORTS_EARLY, *ENDING), needs=("reaches_goal",))
+@check("distances")
 def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     """Obstacles beside or behind the robot do not abort a goal."""
     verdict = of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
@@ -136,7 +126,7 @@ def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     return verdict
 
 
-@check("distances", after=(*ENDING, AT_WALL, STANDS))
+@check("distances")
 def odd_scans(record: Record, limits: Limits) -> Verdict:
     """Ranges of inf, 0 and NaN are not obstacles, and do not hide obstacles."""
     if not record.goals:
@@ -147,12 +137,12 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
     if problem is None:
         return PASSED
     problem = replace(problem, goal=goal)
-    if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind == MOVING:
+    if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind is Kind.MOVING:
         return problem
     hint = ""
-    if problem.kind in (STATUS_NAMES[ABORTED], TOO_EARLY):
+    if problem.kind in (Kind.ABORTED, Kind.TOO_EARLY):
         hint = "A range of 0 or NaN is treated as an obstacle"
-    elif wanted == ABORTED and problem.kind in (STATUS_NAMES[SUCCEEDED], NO_RESULT, SUCCESS):
+    elif wanted == ABORTED and problem.kind in (Kind.SUCCEEDED, Kind.NO_RESULT, Kind.TOO_FAR):
         hint = "A range of 0 or NaN hides the wall"
     hint = hint and f"{hint}: only range_min < r < range_max is a valid range"
     return replace(problem, cause=sentences(problem.cause, hint))

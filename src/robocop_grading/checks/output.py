@@ -31,6 +31,7 @@ FOLDER = re.compile(r"(?<=in file ).*/([^/]+ on line \d)")  # in Python's words 
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 UNKNOWN_TYPE = re.compile("Type .{1,100} if not loaded or supported")  # in tf2's words
 NOT_IMPORTED = "tf2 can transform messages of geometry_msgs only after: import tf2_geometry_msgs"
+NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 DELAY = 0.25  # [s] after which a line has been read
 TRACEBACK = 40  # lines before the error in which its place is looked for
 
@@ -38,6 +39,13 @@ TRACEBACK = 40  # lines before the error in which its place is looked for
 def logged(record: Record, pattern: Pattern[str], until: float = math.inf) -> bool:
     """Return whether a line that the node printed before a time [s] matches."""
     return any(pattern.search(line.text) for line in record.lines if line.time <= until + DELAY)
+
+
+def logged_cause(record: Record, end: float) -> str:
+    """What the log says about why a goal ended wrongly at a time [s]; empty if it says nothing."""
+    if logged(record, EXCEPTION_LOGGED, end):
+        return f"An exception was raised: {last_error(record, end)}"
+    return NO_STATE if logged(record, NO_STATE_LOGGED, end) else ""
 
 
 def last_error(record: Record, until: float = math.inf) -> str:

@@ -6,25 +6,22 @@ from typing import Optional
 from ..handout import Limits
 from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, feedback_of, results_of, samples_between, status_name
 from ..texts import sentences
-from .consequences import ENDING, LATE, NOT_RESET, alike, nothing_came
 from .endings import success_too_far, wrong_ending
 from .output import EXCEPTION_LOGGED, logged
-from .verdict import PASSED, After, Failed, NotReached, Verdict, check
+from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 MOVING, TURNING = 0.02, 0.05  # [m/s], [rad/s]
 MOSTLY = 0.7
 ENDS = 0.3  # [s] in which the robot stops
 SILENT = 1.0  # [s] after which feedback, if it goes on, has come
-NO_ANSWER = "no answer"
 IN_EACH = "is is_preempt_requested() called in each iteration"
 NOTHING_COMES = (
     "neither feedback nor a result of the goal comes: is set_preempted() called for it, or does a callback wait for "
     "something, such as the end of a thread, that itself waits for the callback?"
 )
-PREEMPTION = *ENDING, After("reaches_goal", nothing_came), After("cancel", alike)
 
 
-@check("states", after=PREEMPTION, needs=("reaches_goal", "stays_alive"))
+@check("states")
 def cancel(record: Record, limits: Limits) -> Verdict:
     """A cancelled goal ends as PREEMPTED without delay, and without success."""
     if not record.cancels:
@@ -35,7 +32,7 @@ def cancel(record: Record, limits: Limits) -> Verdict:
     return _preempted(record, goal, request.time, limits, "cancel request", hint) or PASSED
 
 
-@check("states", after=(*PREEMPTION, After("next_goal", alike)), needs=("reaches_goal", "stays_alive"))
+@check("states")
 def newer_goal(record: Record, limits: Limits) -> Verdict:
     """A newer goal preempts the older one and is reached."""
     if len(record.goals) < 2:
@@ -53,7 +50,7 @@ def _preempted(
     if not results or results[0].time > requested + limits.preempt_within:
         seen = f"a result {results[0].time - requested:.1f} s later" if results else "no result"
         wanted = f"PREEMPTED within {limits.preempt_within:g} s of the {request}"
-        return Failed(wanted, seen, requested, _unnoticed(record, goal, requested, request, hint), LATE, goal)
+        return Failed(wanted, seen, requested, _unnoticed(record, goal, requested, request, hint), Kind.END_LATE, goal)
     if results[0].status in (PREEMPTED, RECALLED):
         if results[0].success:
             cause = "result.success is true although the goal was not reached"
@@ -94,11 +91,7 @@ def _begins_other(record: Record, goal: Goal, requested: float, end: float) -> b
     return bool(others) or all(abs(it.v) < MOVING and abs(it.w) < TURNING for it in waiting)
 
 
-@check(
-    "states",
-    after=(After("stays_alive", kind=NO_ANSWER), *ENDING, After("reaches_goal")),
-    needs=("reaches_goal", "stays_alive"),
-)
+@check("states")
 def next_goal(record: Record, limits: Limits) -> Verdict:
     """After a goal has ended, in any state, the next one is served."""
     if len(record.goals) < 2 or not results_of(record, record.goals[-2]):
@@ -107,11 +100,11 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
     answered = {status.id for status in record.statuses} | {result.id for result in record.results}
     if goal.id not in answered:
         cause = "The server no longer accepts goals"
-        return Failed("an answer to the next goal", "none", goal.time, cause, NO_ANSWER, goal)
+        return Failed("an answer to the next goal", "none", goal.time, cause, Kind.NO_ANSWER, goal)
     problem = wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
     if problem is None:
         return PASSED
-    if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind == NOT_RESET:
+    if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind is Kind.NOT_RESET:
         return problem
     before = status_name(results_of(record, record.goals[-2])[0].status)
     hint = f"The next goal fails after the one before it ended as {before}: is all state that a goal changes reset?"

@@ -6,9 +6,8 @@ from typing import Iterator, List, NamedTuple, Optional, Sequence
 
 from ..handout import HEADING_TOLERANCE, Limits
 from ..record import Command, Goal, Record, active_until, errors_at, samples_between
-from .consequences import AT_FIRST, EXCEPTION, MISLED, MOVES_FIRST, died_before, nothing_came
-from .topic_types import wrong_type
-from .verdict import PASSED, After, Failed, NotReached, Verdict, check
+from .topic_use import wrong_type
+from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
 NEAR = 0.2  # [m] closer than this, the direction to the goal changes fast
@@ -51,14 +50,7 @@ def _situations(record: Record, goal: Goal, low: float, high: float) -> List[Sit
     return situations
 
 
-NO_NODE = After("stays_alive", died_before)
-
-
-@check(
-    "speeds",
-    after=(EXCEPTION, MISLED, After("reaches_goal", nothing_came), AT_FIRST, NO_NODE),
-    needs=("reaches_goal",),
-)
+@check("speeds")
 def turns_to_goal(record: Record, limits: Limits) -> Verdict:
     """While angle_error is beyond 0.1 rad the robot turns towards the goal without driving."""
     judged = False
@@ -87,7 +79,7 @@ def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], li
         "The robot drives when the goal comes, and turns only then: calculate the errors first, and let them decide "
         "what it does"
     )
-    return Failed(NOT_DRIVING, seen, first.time, cause, MOVES_FIRST)
+    return Failed(NOT_DRIVING, seen, first.time, cause, Kind.MOVES_FIRST)
 
 
 def _aligned_before(record: Record, goal: Goal, limits: Limits) -> float:
@@ -144,11 +136,11 @@ def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed
     if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
         reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
         cause = wrong_type(record, "/cmd_vel") or f"The robot never turned: angle_error is {angle:.2f} rad but {reason}"
-        return Failed("angular.z towards the goal", "no command to turn", goal.time, cause, "unturned")
+        return Failed("angular.z towards the goal", "no command to turn", goal.time, cause, Kind.UNTURNED)
     return None
 
 
-@check("speeds", after=(MISLED,), needs=("turns_to_goal", "reaches_goal"))
+@check("speeds")
 def drives_straight(record: Record, limits: Limits) -> Verdict:
     """While angle_error is within 0.1 rad the robot drives straight ahead."""
     judged = False

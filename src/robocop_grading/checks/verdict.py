@@ -1,10 +1,52 @@
-"""The verdict of a check on one record, and the table of all checks with what they depend on."""
+"""The verdict of a check on one record, and the table of all checks."""
 
+import enum
+import re
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, Mapping, Optional, Sequence, Union
+from typing import Callable, Dict, Mapping, Optional, Sequence, Union
 
 from ..handout import Limits
-from ..record import Goal, Record
+from ..record import ABORTED, PREEMPTED, SUCCEEDED, Goal, Record
+
+NUMBER = re.compile(r"-?\d+(\.\d+)?")
+
+
+class Kind(enum.Enum):
+    """The ways in which contracts are broken, as far as failures follow from them, or they from other failures."""
+
+    NOT_REACHED = "not reached"  # no failure
+    INCOMPLETE = "the scenario was not recorded"
+    # A goal's end.
+    NO_RESULT = "no result"
+    SUCCEEDED = "SUCCEEDED instead of another state"
+    ABORTED = "ABORTED instead of another state"
+    PREEMPTED = "PREEMPTED instead of another state"
+    OTHER_STATE = "another state"
+    TOO_FAR = "success too far away from the goal"
+    SUCCESS_LATE = "success too late"
+    END_LATE = "an end too late after a request to end"
+    TOO_EARLY = "an abort too far away from the obstacle"
+    EXCEPTION = "an exception ended the goal"
+    NOT_RESET = "an earlier goal has left something behind"
+    NO_ANSWER = "the server no longer accepts goals"
+    TWO_STATES = "two terminal states"
+    NO_MESSAGE = "a result without a message"
+    # Motion.
+    MOVES_FIRST = "motion before the errors and the distance are known"
+    UNTURNED = "no command to turn"
+    LONG_TURN = "a long turn"
+    MOVING = "motion after the end"
+    # Feedback.
+    WRONG_POSITION = "the position is wrong"
+    WRONG_ERROR = "an error is wrong"
+    OLD_POSE = "an error is old"
+    # The bridge.
+    NO_GOAL = "no goal"
+    OTHER_POSITION = "another position"
+    NOT_CANCELLED = "not cancelled"
+    NO_REPORT = "no report"
+    EMPTY_REPORT = "a report without a state"
+    UNTRUE_REPORT = "a report of another state"
 
 
 @dataclass(frozen=True)
@@ -24,56 +66,30 @@ class NotReached:
 
 @dataclass(frozen=True)
 class Failed:
-    """The contract was broken: expected, seen, simulated time [s], likely cause.
-
-    `kind` names the way in which the contract was broken, and `goal` the goal. Both are given if other failures may
-    follow from this failure, or this failure from others.
-    """
+    """The contract was broken: expected, seen, simulated time [s], likely cause, in which way, and for which goal."""
 
     expected: str
     seen: str
     time: float
     cause: str
-    kind: str = ""
+    kind: Optional[Kind] = None
     goal: Optional[Goal] = None
 
 
 Verdict = Union[Passed, NotReached, Failed]
 Judge = Callable[[Record, Limits], Verdict]
 Explain = Callable[[Mapping[str, Record], Sequence[str], Failed], Failed]  # all records, names of those to compare
-When = Callable[[Record, Failed, Failed], bool]  # the failed check's record and failure, and the earlier failure
-
-
-@dataclass(frozen=True)
-class After:
-    """An earlier check that a check depends on.
-
-    If the earlier check has failed, too, the later failure follows from it if the later failure is of this `kind`
-    (any kind if empty) and `when` holds.
-    """
-
-    check: str
-    when: When = lambda _record, _failure, _earlier: True
-    kind: str = ""
-
-    def explains(self, record: Record, failure: Failed, earlier: Failed) -> bool:
-        """Return whether a failure follows from the earlier failure of this check."""
-        return self.kind in ("", failure.kind) and self.when(record, failure, earlier)
 
 
 @dataclass(frozen=True)
 class Check:
     """A function that judges one record, as the check of its name; `plot` names the plot that illustrates it.
 
-    A failure of the check follows from the first check in `after` that applies. If the check is not reached, the
-    first failed check in `needs` is the reason. `explain` names the causes of a failure that fit all scenarios which
-    the check examines.
+    `explain` names the causes of a failure that fit all scenarios which the check examines.
     """
 
     judge: Judge
     plot: str
-    after: Sequence[After] = ()
-    needs: Sequence[str] = ()
     explain: Optional[Explain] = None
 
     def __call__(self, record: Record, limits: Limits) -> Verdict:
@@ -88,11 +104,21 @@ class Check:
 CHECKS: Dict[str, Check] = {}
 
 
-def check(plot: str, **options: Any) -> Callable[[Judge], Judge]:
-    """Have a function judge records as a Check with these options."""
+def check(plot: str, explain: Optional[Explain] = None) -> Callable[[Judge], Judge]:
+    """Have a function judge records as the check of its name."""
 
     def register(judge: Judge) -> Judge:
-        CHECKS[judge.__name__] = Check(judge, plot, **options)
+        CHECKS[judge.__name__] = Check(judge, plot, explain)
         return judge
 
     return register
+
+
+def ended(status: int) -> Kind:
+    """The kind of a failure whose goal ended in this state instead of another one."""
+    return {SUCCEEDED: Kind.SUCCEEDED, ABORTED: Kind.ABORTED, PREEMPTED: Kind.PREEMPTED}.get(status, Kind.OTHER_STATE)
+
+
+def without_figures(cause: str) -> str:
+    """The cause without its figures: causes that differ only in figures are the same."""
+    return NUMBER.sub("#", cause)

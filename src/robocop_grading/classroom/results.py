@@ -13,7 +13,8 @@ from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequen
 from robocop_hosting import tree
 
 from ..checks import Failed
-from ..judge import CheckResult, Grade, Outcome, total, without_figures
+from ..checks.verdict import without_figures
+from ..judge import CheckResult, Grade, Outcome, total
 from ..plan import PARTS, Plan
 from ..report.write import render
 from .summary import Summary

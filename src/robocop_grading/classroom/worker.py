@@ -1,14 +1,16 @@
 """Grades one hand-in of a class and stores its report; run by dask's workers."""
 
 import time
+import traceback
 from dataclasses import replace
 from pathlib import Path
-from typing import List
+from typing import List, Tuple
 
 from aro_robocop_goto_as.errors import RobocopError
 from robocop_hosting.tree import temporary_folder
 from robocop_hosting.workspace import places
 
+from .. import faults
 from ..errors import UngradableError
 from ..grader import grade
 from ..judge import Grade
@@ -42,9 +44,12 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
             raise
         except Exception as error:  # a hand-in that breaks the grader affects only its own row
             report.mkdir(exist_ok=True)
-            problem = str(error) if isinstance(error, RobocopError) else f"could not be graded: {error!r}"
+            problem = str(error)
+            tracebacks: Tuple[str, ...] = ()
+            if not isinstance(error, RobocopError):
+                problem, tracebacks = f"could not be graded, see {faults.FILE}: {error!r}", (traceback.format_exc(),)
             problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MAX_PROBLEM]
-            write(Grade(shown(path), (), (problem, *notes)), plan, {}, report)
+            write(Grade(shown(path), (), (problem, *notes), tracebacks=tracebacks), plan, {}, report)
         results.keep(path.name, digest, report, time.monotonic() - started)
 
 

@@ -11,6 +11,7 @@ from urllib.parse import quote
 
 import jinja2
 
+from .. import faults
 from ..checks import CHECKS
 from ..errors import GradingSetupError
 from ..judge import CheckResult, Grade, Outcome, Records, total
@@ -38,9 +39,11 @@ def make_report_folder(folder: Path) -> Path:
 
 def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool = True) -> None:
     """Write all files to an existing folder that already has the bags; `kept`: the folder will not be moved."""
-    (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1))
+    (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1, default=lambda kind: kind.value))
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
+    if grade.tracebacks:
+        faults.keep(grade.tracebacks, folder)
     # An HTML block without empty lines, so that GitHub does not read texts of the submission as Markdown.
     summary = render("summary.html", grade=grade, marks=MARKS)
     (folder / "summary.md").write_text(summary, encoding="utf-8", errors="replace")

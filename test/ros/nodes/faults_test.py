@@ -4,7 +4,8 @@ What goes wrong with odometry, scans and goals is in server_test.py and test/uni
 """
 
 import psutil
-from harness import ACTION, SERVER, SIMULATOR, SystemTest, script, wait_for, wait_for_connection
+import rospy
+from harness import ACTION, SERVER, SIMULATOR, SystemTest, call_simulator, script, wait_for, wait_for_connection
 from systems import Process
 
 SCRIPTS = {SIMULATOR: "robocop_sim.py", SERVER: "robocop_goto_as.py"}
@@ -79,12 +80,25 @@ class Faults(SystemTest):
         self.goals.clear()
         self.drive()
 
-    def test_server_is_told_to_end(self):
+    def test_server_is_told_to_end_while_the_clock_is_stopped(self):
         goal = self.drive()
+        call_simulator("pause")
+        self.addCleanup(call_simulator, "unpause")
         self.nodes[SERVER].terminate()
         self.assertIn("the server is shutting down", goal.result("SHUTDOWN").result.message)
         self.assertEqual(self.nodes[SERVER].wait_for_exit(), 0)
+        call_simulator("unpause")
         self.robot.wait_until_it_stands()
+        self.restart(SERVER)
+
+    def test_goal_stamped_in_the_future_is_warned_of_and_goto_says_why_the_next_goal_is_recalled(self):
+        self.goals.send(0.1, 0.0, stamp=rospy.Time(1_700_000_000)).result("REACHED")
+        self.goals.log.wait_for(lambda m: "every goal with an earlier stamp ends as RECALLED" in m.msg, "a warning")
+        with Process(script("robocop_goto.py"), 0.2, 0.0, "--frame", "odom") as command:
+            self.assertEqual(command.wait_for_exit(), 1)
+        self.assertIn("RECALLED: its server dropped it before it began, as it was cancelled, or as", command.output)
+        self.nodes[SERVER].terminate()
+        self.assertEqual(self.nodes[SERVER].wait_for_exit(), 0)
         self.restart(SERVER)
 
     def test_simulator_is_killed_and_the_server_ends_when_time_starts_again(self):

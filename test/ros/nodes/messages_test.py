@@ -7,6 +7,7 @@ import unittest
 import numpy as np
 import rospy
 import tf2_ros
+from aro_robocop_goto_as.msg import SimStatus
 from geometry_msgs.msg import Twist, Vector3
 from harness import SIMULATOR, Recorder, Robot, distance, wait_for, wait_for_connection, wait_for_subscriber
 from nav_msgs.msg import Odometry
@@ -186,3 +187,13 @@ class Commands(SimulatorTest):
     def test_commands_are_received_without_nagles_delay_also_from_a_publisher_that_does_not_ask_for_it(self):
         (connected,) = [c.socket for c in self.topic.impl.connections if c.endpoint_id == SIMULATOR]
         self.assertEqual(connected.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY), 1)
+
+    def test_a_robot_whose_wheels_slip_at_an_obstacle_is_reported_until_a_reset(self):
+        log, status = Recorder("/rosout", Log, wait=False), Recorder(f"{SIMULATOR}/status", SimStatus)
+        wait_for_connection(SIMULATOR, "/rosout")
+        self.command(0.2)
+        status.wait_for(lambda m: m.slipped == [""], "the slip")
+        log.wait_for(lambda m: "the wheels slipped at an obstacle: odometry is 0." in m.msg, "a warning")
+        self.command(0.0)
+        self.robot.reset()
+        status.wait_for(lambda m: m.slipped == [], "the end of the slip", len(status))

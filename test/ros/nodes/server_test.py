@@ -1,12 +1,17 @@
 """Goals at actionlib's server: obstacles, cancels, replaced and outdated goals, and parameters that are changed.
 
-Outcomes that differ only in their reason are in test/unit/ros/server.
+What else ends a goal is in faults_test.py and in test/unit/ros/server.
 """
+
+import math
 
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from dynamic_reconfigure.client import Client
-from harness import DEADLINE, SERVER, SystemTest, call_simulator, wait_for
+from geometry_msgs.msg import Twist
+from harness import DEADLINE, SERVER, SIMULATOR, SystemTest, call_simulator, wait_for, wait_for_subscriber
+
+from aro_robocop_goto_as.goto_params import GotoParams
 
 
 class Server(SystemTest):
@@ -18,10 +23,30 @@ class Server(SystemTest):
         wait_for(lambda: GoalStatus.ACTIVE in goal.states(), "a goal that is executed")
         return goal
 
+    def tune(self, values):
+        """Change parameters for one test; the values in force."""
+        tuning = Client(SERVER, timeout=DEADLINE)
+        self.addCleanup(tuning.update_configuration, {name: getattr(GotoParams(), name) for name in values})
+        return tuning.update_configuration(values)
+
     def test_obstacle_ahead_ends_the_goal_and_stops_the_robot(self):
         text = self.goals.send(1.6, 0.73).result("OBSTACLE").result.message  # behind pillar_1
         self.assertRegex(text, r"obstacle 0\.2\d\d m ahead \(limit 0\.3 m\); \d\.\d+ m from the goal x 1\.60 y 0\.73 ")
         self.robot.wait_until_it_stands()
+
+    def test_goal_that_is_no_position_is_aborted_at_once_and_the_robot_stays(self):
+        for x in (math.nan, math.inf, -1e39):
+            text = self.goals.send(x, 0.0).result("BAD_GOAL").result.message
+            self.assertIn(f"position x {x} y 0.0: expected finite numbers in metres", text)
+        self.assertEqual({message.linear.x for message in self.robot.commands.messages}, {0.0})
+
+    def test_goal_without_progress_names_the_other_nodes_that_command_the_robot(self):
+        self.tune({"min_linear_velocity": 0.001, "max_linear_velocity": 0.001})
+        other = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+        self.addCleanup(other.unregister)
+        wait_for_subscriber(other, SIMULATOR)
+        text = self.goals.send(0.6, 0.0).result("STUCK").result.message
+        self.assertTrue(text.endswith(f"; /cmd_vel is also published by {rospy.get_name()}"), text)
 
     def test_cancel_is_served_while_the_clock_is_stopped(self):
         goal = self.send_while_the_clock_is_stopped()
@@ -48,13 +73,11 @@ class Server(SystemTest):
         current.result("REACHED")
 
     def test_changed_parameters_hold_for_the_goal_that_is_executed_and_contradictions_are_refused(self):
-        tuning = Client(SERVER, timeout=DEADLINE)
-        self.addCleanup(tuning.update_configuration, {"max_linear_velocity": 0.2})
         goal = self.send_while_the_clock_is_stopped()
-        shown = tuning.update_configuration({"max_linear_velocity": 0.16})
+        shown = self.tune({"max_linear_velocity": 0.16})
         self.assertEqual((shown["max_linear_velocity"], rospy.get_param(f"{SERVER}/max_linear_velocity")), (0.16, 0.16))
         self.goals.log.wait_for(lambda m: "max_linear_velocity 0.16, was 0.2" in m.msg, "the change")
-        shown = tuning.update_configuration({"min_linear_velocity": 0.5, "linear_gain": 1.0})
+        shown = self.tune({"min_linear_velocity": 0.5, "linear_gain": 1.0})
         self.assertEqual((shown["min_linear_velocity"], shown["linear_gain"]), (0.03, 0.5))
         refused = "min_linear_velocity: expected at most max_linear_velocity 0.16, got 0.5; nothing is changed"
         self.goals.log.wait_for(lambda m: refused in m.msg, "a refusal")

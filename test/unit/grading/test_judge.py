@@ -42,8 +42,8 @@ def failures(record: Record) -> Dict[str, str]:
 
 def test_server_that_never_succeeds_is_not_blamed_for_odd_ranges() -> None:
     stuck = changed(results=(), problem="the robot made no progress for 8 s, and the goal did not end")
-    cause = cause_of("odd_scans", stuck, replace(stuck, name="odd_scan"))
-    assert cause.startswith("This follows from another failed check") and "NaN" not in cause
+    words = checks_of(stuck, replace(stuck, name="odd_scan"))["odd_scans"].words
+    assert words.startswith("failed: This follows from another failed check") and "NaN" not in words
 
 
 def test_exception_in_a_click_callback_is_named_as_the_cause_of_a_missing_goal() -> None:

@@ -38,5 +38,11 @@ def test_a_message_of_the_server_is_shown_in_fewer_words(message: str, shown: st
     assert text.short(message) == shown
 
 
+def test_the_goal_is_found_in_a_message_of_the_server_and_in_no_other_one() -> None:
+    assert text.goal_in("REACHED: 0.098 m from the goal x 0.42 y -0.38 in odom after 8.1 s") == (0.42, -0.38)
+    for message in ("finished", "goal x nan y 1.00 in odom", "goal x 1.2.3 y 1.00 in odom", ""):
+        assert text.goal_in(message) is None
+
+
 def test_an_endless_message_is_cut() -> None:
     assert len(text.plain("x" * 10_000)) == text.MAX_LENGTH

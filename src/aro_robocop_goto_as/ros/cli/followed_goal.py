@@ -5,7 +5,7 @@ import math
 import sys
 import threading
 import time
-from typing import Callable, List, Optional
+from typing import Any, Callable, Optional
 
 import actionlib
 import rospy
@@ -13,7 +13,7 @@ from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
 from visualization_msgs.msg import MarkerArray
 
-from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, GoToPositionResult
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, SimStatus
 
 from ...errors import FrameError
 from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, place, prefixed
@@ -29,12 +29,28 @@ from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT,
 
 ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own
 PAUSE_TIMEOUT = 1.0  # [s, wall] without a change of simulated time
+STATUS = absolute(SIMULATOR, "status")
+SLIPPED = (
+    "the wheels slipped at an obstacle, so odometry is wrong and the robot is not where it says; this puts robots and "
+    f"odometry back: rosservice call {absolute(SIMULATOR, 'reset')} 0"
+)
 PAUSED = "simulated time does not advance; is the simulator paused? (rosservice call /robocop_sim/unpause)"
 
 
 def standstill() -> str:
     """Why simulated time may not advance, and what to do."""
     return master.no_simulator(master.master_uri()) or PAUSED
+
+
+class _Newest:
+    """The newest message of a topic; None before the first one."""
+
+    def __init__(self, topic: str, kind: Any) -> None:
+        self.message: Any = None
+        rospy.Subscriber(topic, kind, self._store, queue_size=1)
+
+    def _store(self, message: Any) -> None:
+        self.message = message
 
 
 class _ProgressLine:
@@ -95,14 +111,11 @@ def go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool] = 
 def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) -> int:
     rospy.init_node("robocop_goto", anonymous=True, disable_signals=True)
     started = rospy.get_rostime()
-    latest: List[Optional[Odometry]] = [None]
-    rospy.Subscriber(
-        absolute_if_named(args.robot, "odom"), Odometry, lambda message: latest.__setitem__(0, message), queue_size=1
-    )
+    odometry, simulator = _Newest(absolute_if_named(args.robot, "odom"), Odometry), _Newest(STATUS, SimStatus)
     odom = _frame(args.robot, "odom")
-    transformer = GoalTransformer(odom, odom, SERVER_TIMEOUT, lambda: latest[0])
+    transformer = GoalTransformer(odom, odom, SERVER_TIMEOUT, lambda: odometry.message)
     action = absolute_if_named(args.robot, ACTION)
-    client = actionlib.SimpleActionClient(action, GoToPositionAction)
+    client = actionlib.ActionClient(action, GoToPositionAction)
     missing = _wait_or_explain(client, action, timeout, ended)
     signals.reraise_if_interrupted()  # rospy may have swallowed it
     if missing:
@@ -121,10 +134,13 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
         if rospy.get_rostime() == started:
             complain(standstill())
         return NOT_REACHED
-    _watch_walls(position, transformer, lambda: latest[0])
+    _watch_walls(position, transformer, lambda: odometry.message)
     given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
     print(f"goal {given}" + (f", {place(position.x, position.y, odom)}" if given.split()[-1] != odom else ""))
-    return _follow(client, position)
+    status = follow(client, position)
+    if simulator.message is not None and args.robot.strip("/") in simulator.message.slipped:
+        complain(SLIPPED)
+    return status
 
 
 def _watch_walls(goal: Point, transformer: GoalTransformer, odom: Callable[[], Optional[Odometry]]) -> None:
@@ -146,9 +162,7 @@ def _watch_walls(goal: Point, transformer: GoalTransformer, odom: Callable[[], O
     rospy.Subscriber(absolute(SIMULATOR, "world"), MarkerArray, on_world)
 
 
-def _wait_or_explain(
-    client: actionlib.SimpleActionClient, action: str, timeout: float, ended: Callable[[], bool]
-) -> str:
+def _wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float, ended: Callable[[], bool]) -> str:
     """Wait up to `timeout` [s, wall] for the server, or until its system has ended.
 
     An empty string, or why it may be missing and what to do.
@@ -163,21 +177,26 @@ def _wait_or_explain(
     return f"{silence}{discovery.hint(action) or '; ' + discovery.advice(action)}"
 
 
-def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
-    """Send a position in odom, show feedback, cancel on Ctrl-C."""
-    progress, pause, done = _ProgressLine(), _PauseNotice(), threading.Event()
-    answer, is_reached, is_sent = "no answer from the server", False, False
+def follow(client: actionlib.ActionClient, position: Point) -> int:
+    """Send a position in odom, show feedback, cancel on Ctrl-C; returns the exit status.
 
-    def on_done(state: int, result: Optional[GoToPositionResult]) -> None:
+    SimpleActionClient knows its goal only once it has been sent: it logs an error about each change of state that comes
+    before, and never tells of an end that does.
+    """
+    progress, pause, done = _ProgressLine(), _PauseNotice(), threading.Event()
+    answer, is_reached, goal = "no answer from the server", False, None
+
+    def on_transition(handle: actionlib.ClientGoalHandle) -> None:
         nonlocal answer, is_reached
-        answer = ending(state, result)
-        is_reached = result is not None and result.success
-        done.set()
+        if handle.get_comm_state() == actionlib.CommState.DONE:
+            result = handle.get_result()
+            answer = ending(handle.get_goal_status(), result)
+            is_reached = result is not None and result.success
+            done.set()
 
     try:
         with signals.Deferred():  # a goal that was sent must be known, or it can't be cancelled
-            client.send_goal(GoToPositionGoal(position), on_done, feedback_cb=progress.show)
-            is_sent = True
+            goal = client.send_goal(GoToPositionGoal(position), on_transition, lambda _, newest: progress.show(newest))
         while not done.wait(0.1):
             signals.reraise_if_interrupted()
             pause.poll()
@@ -186,9 +205,9 @@ def _follow(client: actionlib.SimpleActionClient, position: Point) -> int:
                 complain("the server is gone")
                 return NOT_REACHED
     except KeyboardInterrupt:
-        if not is_sent:
+        if goal is None:
             raise
-        client.cancel_goal()
+        goal.cancel()
         done.wait(SERVER_TIMEOUT)
     progress.close()
     print(answer)

@@ -1,5 +1,7 @@
 """Whether a go-to action server is up, and why it may not be found."""
 
+from typing import Union
+
 import actionlib
 import rosgraph
 import rospy
@@ -10,7 +12,7 @@ from ...suggestions import did_you_mean
 from .. import graph
 
 
-def is_up(client: actionlib.SimpleActionClient) -> bool:
+def is_up(client: Union[actionlib.ActionClient, actionlib.SimpleActionClient]) -> bool:
     """Return whether the client is connected to its server, without waiting; False while ROS time is still zero.
 
     The timeout is over at once, also while the simulator is paused and ROS time would never reach a later time.

@@ -28,6 +28,10 @@ from .goal_frame import GoalTransformer
 from .goal_states import STATES, UNFINISHED, ending
 
 SERVER_TIMEOUT = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
+UNLOGGED = (
+    "Detected jump back",  # tf2's warning at each message while two nodes publish /clock; the server tells of them once
+    "Got a transition callback on a goal handle",  # actionlib's error if a goal starts before send_goal() has returned
+)
 IDLE_POLL = 0.1  # [s, wall] between two checks for shutdown while no click arrives
 
 
@@ -195,8 +199,7 @@ class Bridge:
 
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
-    # tf2's warning at each message while two nodes publish /clock; the server tells of them once.
-    logging.getLogger("rosout").addFilter(lambda record: not record.getMessage().startswith("Detected jump back"))
+    logging.getLogger("rosout").addFilter(lambda record: not record.getMessage().startswith(UNLOGGED))
     answer_help("The bridge: makes goals of robocop_goto_as from 2D Nav Goals of RViz (/move_base_simple/goal).")
     with node(BRIDGE):
         Bridge(load_params(BridgeParams)).run()

@@ -19,6 +19,7 @@ from .tuning import Tuning
 
 # [s, wall] for a topic's first message after a goal was accepted: its publisher may be connecting
 FIRST_MESSAGE_TIMEOUT = 3.0
+ROUNDING = 1  # [ns] by which two periods of a topic differ, as stamps are rounded
 TICK_TIMEOUT = 1.0  # [s, wall] for messages that a simulator in lockstep has already published
 
 
@@ -30,14 +31,14 @@ class Received:
     at: float
     wall: float
     stamp_ns: int
-    period_ns: float  # the shortest so far
+    period_ns: float  # since the message before
     clearance: Optional[float]  # [m] to the nearest obstacle ahead, of a scan that has a beam ahead
 
 
 def _received(message: Any, previous: Optional[Received], clearance: Optional[float] = None) -> Received:
     stamp_ns, period_ns = message.header.stamp.to_nsec(), math.inf
     if previous is not None and stamp_ns > previous.stamp_ns:
-        period_ns = min(stamp_ns - previous.stamp_ns, previous.period_ns)
+        period_ns = stamp_ns - previous.stamp_ns
     return Received(message, rospy.get_rostime().to_sec(), time.monotonic(), stamp_ns, period_ns, clearance)
 
 
@@ -75,7 +76,7 @@ class Inputs:
 
         def complete() -> bool:
             known = [topic for topic in (self.odom, self.scan) if topic is not None]
-            return all(tick_ns - topic.stamp_ns < topic.period_ns for topic in known)
+            return all(tick_ns - topic.stamp_ns + ROUNDING < topic.period_ns for topic in known)
 
         with self._arrived:
             if not self._arrived.wait_for(complete, TICK_TIMEOUT):

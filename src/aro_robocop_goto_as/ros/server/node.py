@@ -29,6 +29,7 @@ from .ticks import Ticks
 from .tuning import Tuning
 
 SHUTDOWN_TIMEOUT = 5.0  # [s, wall] for a running goal to stop the robot and report SHUTDOWN
+MAX_AHEAD = 10.0  # [s] that a stamp may be later than now: clocks of machines differ, and simulated time may race
 SEND_TIME = 0.1  # [s, wall] for rospy to send what was just published
 
 
@@ -68,6 +69,7 @@ class GotoNode:
 
     def go_to(self, goal: GoToPositionGoal) -> None:
         """The handout's loop: one control period after another, until the goal gets its one terminal state."""
+        self.warn_of_the_future(self.server.current_goal.get_goal_id().stamp)
         execution = GoalExecution(goal, self.inputs)
         ending = execution.refusal()
         try:
@@ -96,6 +98,17 @@ class GotoNode:
             self.drive(STANDSTILL)
         self.set_terminal_state(execution, ending)
         self.ticks.answer(self.ticks.newest())
+
+    def warn_of_the_future(self, stamp: rospy.Time) -> None:
+        """Warn of a goal's stamp that is later than now: actionlib's server drops all goals with an earlier stamp."""
+        if stamp.to_sec() > rospy.get_time() + MAX_AHEAD:
+            rospy.logwarn(
+                "the goal is stamped %.1f s, but the time is %.1f s: after this goal, every goal with an earlier stamp "
+                "ends as RECALLED. Start the server again, and stamp goals by rospy.Time.now() with /use_sim_time set, "
+                "or by 0",
+                stamp.to_sec(),
+                rospy.get_time(),
+            )
 
     def is_interrupted(self) -> bool:
         """Return whether the goal has to end before its next control period."""

@@ -1,14 +1,18 @@
 """Simulator status topics ~status, ~real_time_factor, and warnings about the machine and controllers."""
 
-from typing import List
+import math
+from typing import List, Set
 
 import rospy
 from std_msgs.msg import Float64
 
 from aro_robocop_goto_as.msg import SimStatus
 
+from ...geometry import Pose2D, compose
+from ...names import SIMULATOR, absolute
 from ...simulation.lockstep import Connected, ControllerId, TickReport
 from ...simulation.running import RunningSimulator
+from ...simulation.simulator import Simulator
 from ...simulation.time_control import FactorReport
 from .. import convert
 from ..publishing.publisher import publisher
@@ -28,6 +32,7 @@ class StatusTopics:
         self._behind: List[float] = []  # the factors reached in those in which the machine was too slow
         self._drivers: List[ControllerId] = []
         self._has_warned_of_full_speed = False
+        self._slipped: Set[int] = set()  # robots
         self._factor = publisher("~real_time_factor", Float64, latch=True)
         self._status = publisher("~status", SimStatus, latch=True)
 
@@ -38,6 +43,7 @@ class StatusTopics:
         if report is not None:
             self._report = report
             self._factor.publish(report.reached)
+            self._watch_slip()
             self.publish()
             if not self._running.time_control.paused:
                 self._count(report)
@@ -86,6 +92,28 @@ class StatusTopics:
                 "may not" if time_control.pacer.factor else "can't",
             )
 
+    def _watch_slip(self) -> None:
+        """Note robots whose wheels turned at an obstacle until odometry was off by their radius, and warn once of each.
+
+        Where map -> odom follows the truth or is left to a localization, odometry's error does not stay.
+        """
+        simulator = self._running.simulator
+        if simulator.params.topics.localization != "static":
+            return
+        for index, robot in enumerate(simulator.robots):
+            error = odometry_error(simulator, index)
+            if error <= robot.model.figures.footprint_radius:
+                self._slipped.discard(index)
+            elif index not in self._slipped and simulator.touching(index):
+                self._slipped.add(index)
+                rospy.logwarn(
+                    "the wheels %sslipped at an obstacle: odometry is %.2f m off; this puts robots and odometry back: "
+                    "rosservice call %s 0",
+                    robot.name and f"of {robot.name} ",
+                    error,
+                    absolute(SIMULATOR, "reset"),
+                )
+
     def warn_of(self, tick: TickReport) -> None:
         """Log what went wrong in a control tick in lockstep."""
         for controller in tick.gone:
@@ -107,6 +135,7 @@ class StatusTopics:
             stamp=convert.to_time(simulator.stamp_ns),
             world=simulator.world.name,
             robots=[robot.name for robot in simulator.robots],
+            slipped=[simulator.robots[index].name for index in sorted(self._slipped)],
             seed=simulator.seed,
             drive=simulator.params.engine.drive,
             sync="lockstep" if running.controllers.in_lockstep else "free",
@@ -119,3 +148,10 @@ class StatusTopics:
             lockstep_misses=running.controllers.lockstep.misses,
         )
         self._status.publish(status)
+
+
+def odometry_error(simulator: Simulator, robot: int) -> float:
+    """How far [m] a robot is from where its newest odometry, with map -> odom, says that it is."""
+    odom_from_footprint = Pose2D(*simulator.sensors.odometry.poses[robot].tolist())
+    believed, true = compose(simulator.map_from_odom(robot), odom_from_footprint), simulator.world_from_footprint(robot)
+    return math.hypot(believed.x - true.x, believed.y - true.y)

@@ -19,7 +19,7 @@ from ...web.page import floor_point
 from ...web.state import PageState
 from ...web.walls import is_outside
 from .. import convert, markers
-from ..client.goal_states import STATES, UNFINISHED
+from ..client.goal_states import STATES, UNFINISHED, told
 from ..connected_nodes import publishers_of
 from ..marker_shapes import MarkerStore, obstacles
 from .part import Context, Inbox, Part
@@ -43,7 +43,7 @@ class Ended:
     robot: str
     state: str  # of actionlib, as SUCCEEDED
     message: str
-    goal: Optional[Tuple[float, float]]  # [m] in the server's frame, if it was seen
+    goal: Optional[Tuple[float, float]]  # [m] in the server's frame, if it was seen or its server names it
 
 
 class GoalHistory:
@@ -71,7 +71,7 @@ class GoalHistory:
 
     def ended(self, robot: str, goal_id: str, state: str, message: str) -> None:
         """A result was received."""
-        self.latest.appendleft(Ended(robot, state, message, self.position(goal_id)))
+        self.latest.appendleft(Ended(robot, state, message, self.position(goal_id) or text.goal_in(message)))
 
 
 class Goals(Part):
@@ -81,7 +81,7 @@ class Goals(Part):
         super().__init__(context)
         gui, live = context.server.gui, context.state.now.live
         self._feedback_html = gui.add_html("")
-        self._mode = gui.add_dropdown("A click", (SEND_GOAL, PLACE_ROBOT), visible=live, hint="on the floor")
+        self._mode = gui.add_dropdown("Tap or click", (SEND_GOAL, PLACE_ROBOT), visible=live, hint="on the floor")
         self._cancel = gui.add_button("Cancel goal", icon="x", visible=live)
         self._cancel.on_click(lambda _: cancel(context.requests))
         self._history_html: Any = None
@@ -152,8 +152,8 @@ class Goals(Part):
     def _on_result(self, robot: str, _: float, message: GoToPositionActionResult) -> None:
         if robot == self._robot:
             self._feedback = None
-        state, goal_id = STATES.get(message.status.status, ""), message.status.goal_id.id
-        self._history.ended(robot, goal_id, state, message.result.message)
+        state, goal_id = message.status.status, message.status.goal_id.id
+        self._history.ended(robot, goal_id, STATES.get(state, ""), told(state, message.result.message))
 
     def show(self, state: PageState) -> None:
         if state.resets != self._resets and self._newest is not None and not self._executing:

@@ -59,7 +59,7 @@ def load_params(arguments: Sequence[str]) -> WebParams:
 
 
 def add_parts(context: Context, p: WebParams) -> List[Part]:
-    """Add what the panel shows below the status: goals, tabs."""
+    """Add what the panel shows below the status: goals, tabs, the buttons that drive."""
     live = context.state.now.live
     parts: List[Part] = [Replay(context, p.replay_waits)] if p.replay else []
     goals = Goals(context)
@@ -67,7 +67,7 @@ def add_parts(context: Context, p: WebParams) -> List[Part]:
     tabs = context.server.gui.add_tab_group()
     with tabs.add_tab("Control" if live else "Goals"):
         goals.add_history()
-        parts += [TimeControls(context), Teleop(context, p.web_linear_velocity, p.web_angular_velocity)]
+        parts.append(TimeControls(context))
         sector = {words: color_of((c.r, c.g, c.b, c.a))[0] for words, c in SECTOR.items()}
         context.server.gui.add_html(text.legend("sector ahead", sector))
         if live and LAB.is_file():
@@ -76,6 +76,7 @@ def add_parts(context: Context, p: WebParams) -> List[Part]:
         parts += plots(context)
     with tabs.add_tab("View"):
         parts.append(View(context))
+    parts.append(Teleop(context, p.web_linear_velocity, p.web_angular_velocity))
     return parts
 
 

@@ -28,9 +28,9 @@ class Context:
     frames: FrameTree
     fixed_frame: str  # that the scene is drawn in where it is known
 
-    def locate(self, frame: str) -> Optional[Pose3D]:
-        """The pose of a frame in the frame of the scene."""
-        return self.frames.lookup(self.state.now.root, frame.lstrip("/"))
+    def locate(self, frame: str, stamp: Optional[float] = None) -> Optional[Pose3D]:
+        """The pose of a frame in the frame of the scene: the newest, or the one that is nearest to a stamp [s]."""
+        return self.frames.lookup(self.state.now.root, frame.lstrip("/"), stamp)
 
     def place(self, robot: str, x: float, y: float) -> str:
         """A position in a robot's odom [m] in words: in the fixed frame, otherwise in odom, and the text says so."""

@@ -29,28 +29,39 @@ class Robots(Part):
         super().__init__(context)
         self._links: Dict[str, Dict[str, Shape]] = {}  # by robot and name
         self._moved: Set[str] = set()  # frames with a transform on tf
+        self._true = ""  # the base frame that is shown at its true place, as its odometry is wrong; empty if none
 
     def subscribe(self, inbox: Inbox) -> None:
         inbox.subscribe("/tf", TFMessage, self._on_tf, TRANSFORMS)
         inbox.subscribe("/tf_static", TFMessage, self._on_tf, None)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
+        self._true = ""
         inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry)
+        inbox.subscribe(absolute(robot, "ground_truth_odom"), Odometry, self._on_truth)
 
     def _on_odometry(self, _: float, message: Odometry) -> None:
         """Store odometry as a transform, in case nobody publishes this transform, as in the original lab."""
         parent, child = message.header.frame_id.lstrip("/"), message.child_frame_id.lstrip("/")
         pose = to_pose(message.pose.pose.position, message.pose.pose.orientation)
-        if pose is not None and child not in self._moved:
-            self.context.frames.update(parent, child, pose)
+        if pose is not None and child not in self._moved and child != self._true:
+            self.context.frames.update(parent, child, pose, message.header.stamp.to_sec())
+
+    def _on_truth(self, _: float, message: Odometry) -> None:
+        """Store the true pose instead of odometry's, which may be outside of the room, once the wheels have slipped."""
+        state, pose = self.context.state.now, to_pose(message.pose.pose.position, message.pose.pose.orientation)
+        self._true = message.child_frame_id if pose is not None and state.selected in state.slipped else ""
+        if pose is not None and self._true:
+            self.context.frames.update(message.header.frame_id, self._true, pose, message.header.stamp.to_sec())
 
     def _on_tf(self, _: float, message: TFMessage) -> None:
         for stamped in message.transforms:
             pose = to_pose(stamped.transform.translation, stamped.transform.rotation)
             if pose is not None:
                 parent, child = stamped.header.frame_id.lstrip("/"), stamped.child_frame_id.lstrip("/")
-                self.context.frames.update(parent, child, pose)
                 self._moved.add(child)
+                if child != self._true:
+                    self.context.frames.update(parent, child, pose, stamped.header.stamp.to_sec())
 
     def show(self, state: PageState) -> None:
         """Draw all robots. If nobody publishes the fixed frame, as without localization, odom takes its place."""

@@ -49,7 +49,8 @@ class Status(Part):
 
     def _on_sim(self, at: float, message: SimStatus) -> None:
         self._sim, self._sim_at = message, at
-        self.context.state.change(simulated=True, factor_asked=message.factor_asked)
+        slipped = tuple(message.slipped)
+        self.context.state.change(simulated=True, slipped=slipped, factor_asked=message.factor_asked)
 
     def _on_bridge(self, _: float, message: String) -> None:
         self._bridge, found = WAITS.sub("", message.data), WAITS.search(message.data)
@@ -65,7 +66,8 @@ class Status(Part):
             self._on_bridge(0.0, String(""))  # it is gone
         silence = 0.0 if self._sim is None or state.recorded else time.monotonic() - self._sim_at
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
-        self._alert.content = text.alert(gone if silence > SILENCE_TIMEOUT else self._no_simulator)
+        problem = gone if silence > SILENCE_TIMEOUT else self._no_simulator or _slip(state)
+        self._alert.content = text.alert(problem)
         known = state.live or self._sim is not None or self._bridge  # the recording of a grading has neither
         self._overview.content = text.table(self._rows(state)) if known else ""
         self._answer.content = text.answer(state.answer)
@@ -83,3 +85,14 @@ class Status(Part):
         # What the bridge adds to that, and its words for a goal, the page shows elsewhere.
         report = "ready" if self._bridge.startswith((f"{ACTION} is ready", "goal x ")) else self._bridge
         return [*rows, ("server", "executes a goal" if state.executing else report or answers)]
+
+
+def _slip(state: PageState) -> str:
+    """What to know of robots whose odometry is wrong; empty if there are none."""
+    if not state.slipped:
+        return ""
+    robots = " and ".join(filter(None, state.slipped))
+    return (
+        f"The wheels {robots and f'of {robots} '}slipped at an obstacle: odometry is wrong, and goals lead elsewhere. "
+        "The robot is shown where it is. Reset puts it and its odometry back."
+    )

@@ -19,24 +19,39 @@ from .part import Context, Part
 END_TIMEOUT = 0.5  # [s, wall]
 PERIOD = 0.1  # [s, wall]
 IDLE_TIMEOUT = 3.0  # [s, wall] without driving until cmd_vel is given up
-PAD = (  # in the order of CROSS
+PAD = (  # in the order of the grid's cells
     # label, hot key, share of the full speed
-    ("Forward (I)", "I", Twist2D(1.0, 0.0)),
-    ("Left (J)", "J", Twist2D(0.0, 1.0)),
     ("Stop", None, None),
-    ("Right (L)", "L", Twist2D(0.0, -1.0)),
-    ("Back (K)", "K", Twist2D(-1.0, 0.0)),
+    ("Forward", "I", Twist2D(1.0, 0.0)),
+    ("Left", "J", Twist2D(0.0, 1.0)),
+    ("Back", "K", Twist2D(-1.0, 0.0)),
+    ("Right", "L", Twist2D(0.0, -1.0)),
 )
-# The panel has no rows of buttons: this style arranges the buttons of its folder.
-CROSS = """<style class="cross">
-div:has(> div > .cross) {
+# The panel has no rows of buttons: this style arranges the buttons of its folder as the arrow keys of a keyboard. The
+# folder stays at the lower edge of a panel that is scrolled, where a thumb reaches it. 44 px is the smallest control
+# for a finger by the W3C (WCAG 2.5.5) and by Apple. Hot keys are shown only where there is a mouse.
+STYLE = """<style class="pad">
+div:has(> div > .pad) {
   display: grid; grid-template-columns: repeat(3, 1fr); padding: 0.6em 0.3em 0;
   & > div { margin-inline: 0.2em !important; button { padding-inline: 0; touch-action: none; } }
   & > :nth-child(1) { display: none; }
-  & > :nth-child(2), & > :nth-child(6) { grid-column: 2; }
-  & > :nth-child(3) { grid-column: 1; }
+  & > :nth-child(4) { grid-column: 1; }
 }
+div:has(> div > div > div > div > .pad) {
+  position: sticky; bottom: 0; z-index: 5; background: var(--mantine-color-body);
+}
+div[style*="overflow: hidden; min-height"]:has(.pad) { overflow: clip !important; } /* or nothing in it can be sticky */
+@media (pointer: coarse) { .mantine-Button-root { min-height: 44px; } }
+@media (max-height: 30em) { /* a phone that is turned */
+  div:has(> div > .pad) { grid-template-columns: repeat(5, 1fr); & > :nth-child(4) { grid-column: auto; } }
+}
+@media (pointer: fine) { KEYS }
 </style>"""
+KEYS = "".join(
+    f'div:has(> div > .pad) > :nth-child({2 + number}) .mantine-Button-label::after {{ content: "\\a0({key})"; }}'
+    for number, (_, key, _) in enumerate(PAD)
+    if key
+)
 
 
 class Teleop(Part):
@@ -52,7 +67,7 @@ class Teleop(Part):
         self._wake = threading.Condition()
         gui = context.server.gui
         with gui.add_folder("Drive", visible=context.state.now.live):
-            gui.add_html(CROSS)
+            gui.add_html(STYLE.replace("KEYS", KEYS))
             for label, key, share in PAD:
                 if share is None:
                     gui.add_button(label, icon="hand-stop").on_click(lambda _: self.stop())

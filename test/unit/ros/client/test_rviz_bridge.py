@@ -155,6 +155,13 @@ def test_ending_is_the_state_and_the_message_of_the_result(message, text):
     assert ending(GoalStatus.ABORTED, None if message is None else GoToPositionResult(message=message)) == text
 
 
+def test_ending_of_a_goal_that_actionlib_recalls_says_why_servers_recall_goals():
+    assert ending(GoalStatus.RECALLED, GoToPositionResult()).startswith(
+        "RECALLED: its server dropped it before it began"
+    )
+    assert ending(GoalStatus.RECALLED, GoToPositionResult(message="so")) == "RECALLED: so"
+
+
 def test_status_is_reported_periodically_and_odometry_and_frames_are_those_of_the_transforms(system):
     assert system.timers == [(BridgeParams().status_period, system.bridge.report)]
     (*given, latest_odom) = system.transforms[0]

@@ -25,10 +25,10 @@ class Server:
         monkeypatch.setattr(inputs.time, "monotonic", lambda: self.wall)
         self.inputs = Inputs(self)
 
-    def receive_odom(self, stamp, x=0.0, w=1.0):
-        """Odometry of a time [s]; its position x [m], and its orientation's w."""
+    def receive_odom(self, stamp, x=0.0, w=1.0, unit=10**9):
+        """Odometry of a time [`unit` ns]; its position x [m], and its orientation's w."""
         odom = Odometry()
-        odom.header.stamp = rospy.Time(stamp)
+        odom.header.stamp = rospy.Time(nsecs=round(stamp * unit))
         odom.pose.pose.position.x, odom.pose.pose.orientation.w = x, w
         self.inputs.on_odom(odom)
 
@@ -134,3 +134,19 @@ def test_message_that_does_not_come_is_told(ticking):
 def test_message_that_is_not_due_is_not_waited_for(ticking):
     ticking.inputs.wait_for_tick(19 * 10**8)
     assert ticking.warnings == []
+
+
+def test_two_messages_that_came_close_together_once_do_not_make_later_ticks_wait(ticking):
+    for stamp in (1.51, 2.0, 2.5):  # the first by another publisher
+        ticking.receive_odom(stamp)
+        ticking.receive_scan(stamp)
+    ticking.inputs.wait_for_tick(29 * 10**8)
+    assert ticking.warnings == []
+
+
+def test_message_is_waited_for_where_its_period_is_one_nanosecond_shorter_than_the_one_before(ticking):
+    ticking.receive_scan(2.0)
+    for nanoseconds in (2033333333, 2066666667):
+        ticking.receive_odom(nanoseconds, unit=1)
+    ticking.inputs.wait_for_tick(2100000000)
+    assert len(ticking.warnings) == 1

@@ -176,6 +176,12 @@ def test_the_history_holds_the_last_goals_with_their_positions():
     assert len(history.latest) == goals.REMEMBERED
 
 
+def test_a_goal_that_was_not_seen_has_the_position_that_its_server_names():
+    history = goals.GoalHistory()
+    history.ended("", "x", "ABORTED", "OBSTACLE: so; 1.00 m from the goal x 2.00 y -1.50 in odom")
+    assert history.latest[0].goal == (2.0, -1.5)
+
+
 def test_a_goal_without_an_id_is_recognised_by_the_one_that_its_server_gives_it():
     history = goals.GoalHistory()
     history.sent("named", 1.0, 0.0)

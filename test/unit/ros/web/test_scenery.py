@@ -8,11 +8,22 @@ import pytest
 from sensor_msgs.msg import LaserScan
 from visualization_msgs.msg import Marker, MarkerArray
 
+from aro_robocop_goto_as.geometry import Pose3D
 from aro_robocop_goto_as.ros import markers
 from aro_robocop_goto_as.ros.web.part import Context
-from aro_robocop_goto_as.ros.web.scenery import FREE, MAX_MAP_CELLS, OCCUPIED, UNKNOWN, Scenery, map_image, scan_points
+from aro_robocop_goto_as.ros.web.scenery import (
+    FREE,
+    LABEL_HEIGHT,
+    MAX_MAP_CELLS,
+    OCCUPIED,
+    UNKNOWN,
+    Scenery,
+    map_image,
+    part_labels,
+    scan_points,
+)
 from aro_robocop_goto_as.web.frames import FrameTree
-from aro_robocop_goto_as.web.scene import PageScene
+from aro_robocop_goto_as.web.scene import BOX, TEXT, PageScene, Shape
 from aro_robocop_goto_as.web.state import PageState, SharedState
 
 
@@ -49,3 +60,16 @@ def test_the_cameras_turn_to_a_world_once():
         scenery.show(state.now)
         assert cameras.show.call_count == 1
     assert len([*cameras.show.call_args[0][0]]) == 1, "without the robots, whose frames may be known before or after"
+
+
+def test_texts_that_would_cover_each_other_are_raised_above_one_another():
+    places = {"first": (0.0, 0.0, 0.6), "beside": (0.5, 0.1, 0.6), "behind": (0.0, 2.0, 0.6), "state": (0.0, 0.0, 0.9)}
+    group = {name: (Shape(TEXT, text=name), Pose3D(position)) for name, position in places.items()}
+    group["wall"] = (Shape(BOX), Pose3D((0.0, 0.0, 0.6)))
+    server = {"state": group.pop("state")}
+    part_labels(group, server)
+    places = {name: pose.position for name, (_, pose) in (*group.items(), *server.items())}
+    assert places.pop("wall") == (0.0, 0.0, 0.6)
+    assert places["first"] == (0.0, 0.0, 0.6) and places["behind"] == (0.0, 2.0, 0.6)
+    ups = sorted(y + z for _, y, z in places.values())
+    assert min(above - below for below, above in zip(ups, ups[1:])) >= LABEL_HEIGHT - 1e-9

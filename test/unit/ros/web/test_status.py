@@ -1,8 +1,10 @@
 """What the page says of the server."""
 
+import time
 from unittest.mock import MagicMock
 
 import pytest
+from aro_robocop_goto_as.msg import SimStatus
 
 from aro_robocop_goto_as.probes import master
 from aro_robocop_goto_as.ros.web.part import Context
@@ -22,9 +24,21 @@ def test_a_page_that_no_simulator_has_reported_to_says_whether_one_runs(monkeypa
     status.ask_master(PageState(), MagicMock())
     status.show(PageState())
     assert "no simulator is running" in status._alert.content
-    status._on_sim(0.0, MagicMock())
+    status._on_sim(0.0, SimStatus())
     status.ask_master(PageState(), MagicMock())
     assert status._no_simulator == ""
+
+
+@pytest.mark.parametrize(
+    "slipped, words",
+    [([], ""), ([""], "The wheels slipped at an obstacle"), (["red"], "The wheels of red slipped at an")],
+)
+def test_wheels_that_have_slipped_are_told_with_the_remedy(slipped, words):
+    status = made(PageState())
+    status._alert = MagicMock()
+    status._on_sim(time.monotonic(), SimStatus(slipped=slipped))
+    status.show(status.context.state.now)
+    assert words in status._alert.content and ("Reset puts" in status._alert.content) == bool(slipped)
 
 
 @pytest.mark.parametrize(

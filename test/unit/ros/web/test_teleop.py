@@ -73,4 +73,4 @@ def test_each_button_drives_its_way_while_it_is_held(monkeypatch):
     monkeypatch.setattr(pad, "drive", lambda _page, twist: asked.append(twist))
     for held in context.server.gui.add_button.return_value.on_hold.call_args_list:
         asyncio.run(held[0][0](MagicMock()))
-    assert asked == [(0.2, 0.0), (0.0, 1.0), (0.0, -1.0), (-0.2, 0.0)]
+    assert asked == [(0.2, 0.0), (0.0, 1.0), (-0.2, 0.0), (0.0, -1.0)]
