@@ -5,8 +5,8 @@ import sys
 
 from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.robot.catalog import load_model
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator, robots_from
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.world.load import find_world, load_world
 from bench.cases import VELOCITY, Case
 

@@ -6,11 +6,11 @@ from typing import AbstractSet, Callable, List, Set, Tuple
 from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.robot.model import RobotSpec
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.agenda import Due, Subscriptions
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.jobs import Queue, WallClock
 from aro_robocop_goto_as.simulation.lockstep import ControllerId, TickReport
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.simulation.running import Outputs, RunningSimulator
 from aro_robocop_goto_as.simulation.simulator import Change
 

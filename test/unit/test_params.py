@@ -12,7 +12,7 @@ from aro_robocop_goto_as.bridge_params import BridgeParams
 from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.goto_params import GotoParams
 from aro_robocop_goto_as.param_loading import declared, from_dict
-from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.params import SimParams
 
 CONFIGS = [("sim.yaml", SimParams), ("goto_as.yaml", GotoParams), ("rviz_goto_ac.yaml", BridgeParams)]
 

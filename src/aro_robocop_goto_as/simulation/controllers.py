@@ -3,9 +3,9 @@
 from typing import Dict, NamedTuple, Optional
 
 from ..geometry import STANDSTILL, Twist2D
-from ..sim_params import LockstepParams
 from .jobs import WallClock
 from .lockstep import Connected, ControllerId, Lockstep, TickReport
+from .params import LockstepParams
 from .simulator import Simulator
 
 

@@ -16,9 +16,9 @@ from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
 from ..sensors.catalog import Sensors
 from ..sensors.sensor import Site
-from ..sim_params import SimParams
 from ..world.model import Occupancy, World
 from .agenda import Agenda, Due, Subscriptions
+from .params import SimParams
 from .schedule import stamp_ns
 
 

@@ -4,8 +4,8 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Callable, Optional
 
-from ..sim_params import TimeParams
 from .jobs import WallClock
+from .params import TimeParams
 
 PAUSED_PERIOD = 0.1  # [s, wall] between repetitions of /clock while paused, for nodes that start meanwhile
 MAX_HOLD = 0.5  # [s, wall] between two checks for other due work while the wall clock is waited for

@@ -9,7 +9,7 @@ from support import model_named
 from aro_robocop_goto_as.errors import CommandError
 from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.robot.base_controller import Limits, clamped, limits_from
-from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 

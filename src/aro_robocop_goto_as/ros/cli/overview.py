@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 from ...errors import RobocopError
 from ...names import SERVER, WEB, robocop
 from ...param_loading import from_dict
-from ...sim_params import SimParams
+from ...simulation.params import SimParams
 from ...web.access import default_host, url
 from ...web_params import WebParams
 

@@ -7,9 +7,9 @@ import rospy
 
 from ...errors import ParameterError
 from ...names import SIMULATOR
-from ...sim_params import SimParams, TopicParams
 from ...simulation.agenda import Due, Subscriptions
 from ...simulation.lockstep import ControllerId, TickReport
+from ...simulation.params import SimParams, TopicParams
 from ...simulation.running import Outputs, RunningSimulator
 from ...simulation.simulator import Change, Simulator
 from ..node_main import answer_help, end_with_master, load_params, node
