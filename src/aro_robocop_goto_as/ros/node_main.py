@@ -91,8 +91,8 @@ def node(name: str, **options: Any) -> Iterator[None]:
     raise_descriptor_limit()
     try:
         rospy.init_node(name, disable_signals=True, **options)
-        # While this is not set, rospy asks the master for it at each line that it logs. If a node that ends because
-        # another one has its name logs a line, the master takes the question for a registration and ends the other one.
+        # While this is not set, rospy asks the master for it at each line that it logs. When a node that lost its name
+        # logs, the master takes this query for a new registration and ends the other node.
         if not rospy.has_param(ROSOUT_TOPICS):
             rospy.set_param(ROSOUT_TOPICS, False)  # as it is when not set
         yield

@@ -108,7 +108,7 @@ def _run(options: argparse.Namespace, deferred: signals.Deferred) -> int:
         if not launcher.pm.is_shutdown:
             print(overview(running, simulator, logs, not options.quiet), file=screen, flush=True)
     if not options.no_summary:
-        with deferred:  # one while it logs, of which the monitor's thread then waits for the lock, for 20 s
+        with deferred:  # a signal during logging would leave its lock held, and the monitor would wait 20 s for it
             rlutil.check_log_disk_usage()
     launcher.spin()
     return FAILED if failed or launcher.failed else 0
