@@ -23,9 +23,9 @@ From a goal to its result:
 
     ros.server.node               goal -> the handout's loop -> cmd_vel, feedback, in the end result and terminal state
         ros.server.ticks          when the next control period begins
-        ros.server.inputs         newest odom and scan -> pose, and by obstacle_ahead the clearance
+        ros.server.inputs         newest odom and scan -> pose, and by goto.obstacle_ahead the clearance
         ros.server.goal_execution decides by the rule; ends a goal that is stuck or late
-            goto                  the handout's rule: rotate, move forward, reached or obstacle
+            goto.rule             one `step` a control period: rotate, move forward, reached or obstacle
 
     A 2D Nav Goal becomes a goal in ros.client: rviz_bridge, goal_frame (tf2).
 

@@ -82,7 +82,7 @@ sys.exit(pytest.main(["-n", "0", "-p", "no:cacheprovider", "--capture=sys", *arg
 """
 TESTS = (
     *("physics/test_kinematic.py", "raycast/test_compiled_beams.py", "raycast/test_movers.py", "sensors/test_lidar.py"),
-    *("sensors/test_odometry.py", "ros/publishing/test_batch.py", "ros/sim/test_sensor_topics.py"),
+    *("sensors/test_odometry.py", "ros/publishing/test_batch.py", "ros/sim/test_sensor_messages.py"),
 )
 
 

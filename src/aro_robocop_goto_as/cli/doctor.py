@@ -78,7 +78,8 @@ def master_row() -> Tuple[str, str]:
         state = master.running_simulator(uri) or master.no_simulator(uri) or "no simulator is running"
         commanded = master.publishers(uri, "cmd_vel").items()
         several = [f"{topic} is published by {' and '.join(nodes)}" for topic, nodes in commanded if len(nodes) > 1]
-        return "; ".join([f"answers at {uri}", state, *several]), ""
+        unheard = [f"no robot listens to {topic}" for topic in master.unheard(uri, "geometry_msgs/Twist")]
+        return "; ".join([f"answers at {uri}", state, *several, *unheard]), ""
     except MasterError as error:
         return "does not answer", str(error)
 

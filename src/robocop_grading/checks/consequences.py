@@ -4,7 +4,7 @@ from typing import Callable, NamedTuple, Optional
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import Feedback, Goal, Record, active_until, errors_at, feedback_of, results_of, samples_between
-from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, logged
+from .output import NO_STATE_LOGGED, UNCAUGHT, logged
 from .verdict import Failed, Kind, without_figures
 
 MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and driving are right
@@ -47,7 +47,7 @@ def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether an exception was logged before a goal ended otherwise than it should."""
-    return failure.kind is not None and logged(record, EXCEPTION_LOGGED, end_of(record, failure))
+    return failure.kind is not None and logged(record, UNCAUGHT, end_of(record, failure))
 
 
 def none_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -160,7 +160,9 @@ FOLLOWS = (
     Row("next_goal", Kind.NO_ANSWER, "stays_alive"),
     Row("feedback_rate", None, "stays_alive", died),
     # Feedback.
+    Row("feedback_rate", Kind.TOO_LITTLE, "no_exception", raised),
     Row("feedback_angle", Kind.WRONG_POSITION, "feedback_position"),
+    Row("feedback_angle", Kind.OLD_POSE, "feedback_position", alike),
     Row("feedback_position feedback_angle", None, "next_goal", kept),
     # How goals end.
     Row("only_ahead_counts", Kind.ABORTED, "stops_at_obstacle", too_early_elsewhere),

@@ -25,7 +25,7 @@ def main() -> None:
 
 
 def _run(job: Job) -> None:
-    stage = Stage(job.plan)
+    stage = Stage()
     run: Run = (ServerRun if job.part == "server" else BridgeRun)(job, stage)
     try:
         run.scenarios()

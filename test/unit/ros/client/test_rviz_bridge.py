@@ -8,10 +8,10 @@ from actionlib_msgs.msg import GoalID, GoalStatus
 from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionResult
 from geometry_msgs.msg import Point, PoseStamped
 
-from aro_robocop_goto_as.bridge_params import BridgeParams
 from aro_robocop_goto_as.errors import FrameError
 from aro_robocop_goto_as.ros.client import rviz_bridge
 from aro_robocop_goto_as.ros.client.goal_states import ending
+from aro_robocop_goto_as.ros.client.params import BridgeParams
 
 CHECKS = 6  # of is_shutdown, until the node ends
 
@@ -32,7 +32,7 @@ class System:
         monkeypatch.setattr(rviz_bridge.actionlib, "SimpleActionClient", lambda *_: self)
         monkeypatch.setattr(rviz_bridge.discovery, "is_up", lambda client: self.is_up)
         monkeypatch.setattr(rviz_bridge.discovery, "absence", lambda action: "absent")
-        monkeypatch.setattr(rviz_bridge.discovery, "advice", lambda action: "advice")
+        monkeypatch.setattr(rviz_bridge.discovery, "advice", lambda: "advice")
         transformer = SimpleNamespace(frame_of=lambda pose: "map", resolve=self.resolve)
         monkeypatch.setattr(rviz_bridge, "GoalTransformer", lambda *given: self.transforms.append(given) or transformer)
         self.bridge = rviz_bridge.Bridge(BridgeParams())
