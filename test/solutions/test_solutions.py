@@ -56,7 +56,7 @@ def test_wrong_solution_fails_the_intended_check_with_the_expected_explanation(w
 def test_what_works_with_the_handouts_server_gets_full_marks_and_advice(advised, tmp_path):
     grade = graded(advised.name, advised.text(), tmp_path)
     assert grade.failed() == []
-    assert any(advised.words in problem for problem in grade.problems), grade.problems
+    assert any(advised.words in note for note in grade.notes), grade.notes
 
 
 @pytest.mark.slow

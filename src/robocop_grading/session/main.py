@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..errors import GraderLostError
 from ..record import read
-from .bridge import BridgeRun
+from .bridge_run import BridgeRun
 from .job import Job, begin_to_tell, tell
 from .run import Run
 from .server import ServerRun

@@ -31,9 +31,9 @@ BEFORE, SECOND = (1.24, -0.43), (-0.57, 0.86)  # [m] clicks in odom; a bridge th
 # The goals after the first one: the click, for how long [s] its goal is active, how it ends, and how long [s] the next
 # click takes to come. The last click comes while a server's status still begins with the goal before.
 LATER_GOALS = (
-    (SECOND, 5.0, rec.ABORTED, 11.0),
+    (SECOND, 5.0, rec.ABORTED, 9.0),
     (SECOND, 2.0, rec.PREEMPTED, 0.4),
-    (BEFORE, 5.0, rec.PREEMPTED, 4.0),
+    (BEFORE, 5.0, rec.PREEMPTED, 3.0),
 )
 # Types in which a bridge may report the goal's state: text, actionlib's states and their numbers. Not GoalStatusArray,
 # which any action server sends by itself, and not floats, which may be anything.
@@ -176,7 +176,7 @@ class BridgeRun(Run):
     def _click(self) -> None:
         """Send clicks while there is a server; let time pass while each goal is active, and after its end.
 
-        The first goal is active for a report's period more than `status_span`, so that no report is lost by its phase.
+        The first goal is active for longer than `status_span`, so that no report is lost by its phase.
         """
         self.begin("click")
         self._serve()
@@ -188,7 +188,7 @@ class BridgeRun(Run):
         self.marks["listeners"] = float(self.topics.reaches(CLICKS))
         self.marks["clients"] = float(self.topics.hears(f"{ACTION}/goal"))
         limits = self.plan.limits
-        first = (BEFORE, limits.status_span + limits.status_period, rec.SUCCEEDED, 8.0)
+        first = (BEFORE, limits.status_span + limits.status_period / 2.0, rec.SUCCEEDED, 6.0)
         for click, active, status, after in (first, *LATER_GOALS):
             self._send_click("odom", *click)
             self._watch_reports(active)
@@ -251,7 +251,7 @@ class BridgeRun(Run):
         self.begin("pending")
         self.settle(1.0)
         self._send_click("odom", *BEFORE)
-        self._watch_reports(self.plan.limits.status_period + 1.0)
+        self._watch_reports(self.plan.limits.status_period + 2.0)
         self._stop_watching()
         self._send_click("odom", *SECOND)
         self.settle(2.0)
