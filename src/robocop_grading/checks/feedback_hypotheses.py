@@ -10,6 +10,7 @@ from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from ..record import Feedback, Goal, Sample, errors_at, wrapped
 
 POSITION, ANGLE = range(2)  # indices of ERRORS
+UNSURE = 0.3  # [m] nearer to where the goal is taken to be, an inexact position turns its direction too much
 
 
 class Pair(NamedTuple):
@@ -121,12 +122,15 @@ SENTENCES = {  # of causes, by their names
 Hypothesis = Tuple[str, Callable[[Pair], float]]  # name of the cause; the value that it would lead to
 
 
-def _pose(sample: Sample) -> Pose2D:
-    return Pose2D(sample.x, sample.y, sample.yaw)
-
-
-def _subtracted(pair: Pair) -> Pose2D:
-    return Pose2D(*(now - first for now, first in zip(_pose(pair.now), pair.started)))
+def _since_start(pair: Pair, index: int, is_turned: bool) -> float:
+    """An error for a pose that is counted from where the node was started, also in the heading of then or not."""
+    now, first = Pose2D(pair.now.x, pair.now.y, pair.now.yaw), pair.started
+    counted = (
+        compose(inverse(first), now) if is_turned else Pose2D(now.x - first.x, now.y - first.y, now.yaw - first.yaw)
+    )
+    errors = errors_at(counted, pair.goal)
+    is_unsure = index == ANGLE and errors[POSITION] < UNSURE
+    return pair.feedback.angle_error if is_unsure else errors[index]
 
 
 def _misplaced(index: int) -> Sequence[Hypothesis]:
@@ -141,8 +145,8 @@ def _misplaced(index: int) -> Sequence[Hypothesis]:
         ("pose_of_start", lambda p: errors_at(p.start, p.goal)[index]),
         ("relative", lambda p: p.misread(p.start.yaw)[index]),
         ("relative", lambda p: p.misread(0.0)[index]),
-        ("since_start_of_node", lambda p: errors_at(compose(inverse(p.started), _pose(p.now)), p.goal)[index]),
-        ("since_start_of_node", lambda p: errors_at(_subtracted(p), p.goal)[index]),
+        ("since_start_of_node", lambda p: _since_start(p, index, True)),
+        ("since_start_of_node", lambda p: _since_start(p, index, False)),
     )
 
 
