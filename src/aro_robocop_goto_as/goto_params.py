@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import asdict, dataclass, fields
+from functools import partial
 from typing import Any, List, Mapping
 
 from .param_loading import from_dict, parameter, positive
@@ -15,31 +16,43 @@ MIN_SPEED = 1e-3  # [m/s], [rad/s] slower than anybody waits
 MIN_ACCELERATION = 0.01  # [m/s^2], [rad/s^2] slower than anybody waits
 MAX_OBSTACLE_DISTANCE = 1e3  # [m] beyond every scanner's range
 
+live = partial(parameter, live=True)  # cfg/Goto.cfg offers these to dynamic_reconfigure
+
 
 @dataclass(frozen=True)
 class GotoParams:
-    """Parameters of robocop_goto_as; config/goto_as.yaml documents each one."""
+    """Parameters of robocop_goto_as."""
 
-    control_rate: float = positive(10.0, high=1000.0)
-    position_tolerance: float = parameter(0.1, low=MIN_TOLERANCE, high=1e3)
-    angle_tolerance: float = parameter(0.1, low=MIN_TOLERANCE, high=math.pi)
-    obstacle_distance: float = parameter(0.3, low=0.0, high=MAX_OBSTACLE_DISTANCE)
-    obstacle_half_angle: float = parameter(math.pi / 6.0, low=0.0, high=math.pi)
-
-    linear_gain: float = parameter(0.5, low=MIN_GAIN, high=MAX_GAIN)
-    angular_gain: float = parameter(5.0, low=MIN_GAIN, high=MAX_GAIN)
-    max_linear_velocity: float = parameter(0.2, low=MIN_SPEED, high=MAX_LINEAR)
-    min_linear_velocity: float = parameter(0.03, low=MIN_SPEED, high=MAX_LINEAR)
-    max_angular_velocity: float = parameter(1.0, low=MIN_SPEED, high=MAX_ANGULAR)
-    min_angular_velocity: float = parameter(0.3, low=MIN_SPEED, high=MAX_ANGULAR)
-    linear_acceleration: float = parameter(0.5, low=MIN_ACCELERATION, high=MAX_LINEAR)
-    angular_acceleration: float = parameter(3.0, low=MIN_ACCELERATION, high=MAX_ANGULAR)
-
-    data_timeout: float = positive(1.0)
-    stuck_timeout: float = positive(5.0)
-    stuck_distance: float = positive(0.01)
-    stuck_angle: float = positive(0.05)
-    goal_timeout: float = parameter(0.0, low=0.0)
+    control_rate: float = positive(10.0, "[Hz] of the control loop and its feedback (handout)", high=1000.0)
+    position_tolerance: float = live(0.1, MIN_TOLERANCE, 1e3, "[m] the goal is reached within this distance (handout)")
+    angle_tolerance: float = live(
+        0.1, MIN_TOLERANCE, math.pi, "[rad] the robot turns in place beyond this angle_error, else drives (handout)"
+    )
+    obstacle_distance: float = live(
+        0.3, 0.0, MAX_OBSTACLE_DISTANCE, "[m] an obstacle ahead nearer than this aborts the goal (handout)"
+    )
+    obstacle_half_angle: float = parameter(
+        math.pi / 6.0, 0.0, math.pi, "[rad] ahead is 30 degrees to either side (the lab's skeleton)"
+    )
+    linear_gain: float = live(0.5, MIN_GAIN, MAX_GAIN, "[1/s] forward velocity per metre of position_error")
+    angular_gain: float = live(
+        5.0, MIN_GAIN, MAX_GAIN, "[1/s] turn per angle_error; the robot coasts into the middle of the tolerance"
+    )
+    max_linear_velocity: float = live(0.2, MIN_SPEED, MAX_LINEAR, "[m/s] slightly below the Burger's 0.22")
+    min_linear_velocity: float = live(
+        0.03, MIN_SPEED, MAX_LINEAR, "[m/s] near the goal, so that it is reached; acceleration starts below it"
+    )
+    max_angular_velocity: float = live(
+        1.0, MIN_SPEED, MAX_ANGULAR, "[rad/s] halved for the rest of a goal each time that the robot has to turn back"
+    )
+    min_angular_velocity: float = live(0.3, MIN_SPEED, MAX_ANGULAR, "[rad/s] at small angles, so that a turn ends")
+    linear_acceleration: float = live(0.5, MIN_ACCELERATION, MAX_LINEAR, "[m/s^2] of the commanded velocity")
+    angular_acceleration: float = live(3.0, MIN_ACCELERATION, MAX_ANGULAR, "[rad/s^2] of the commanded velocity")
+    data_timeout: float = positive(1.0, "[s] without odometry or a valid scan: the goal is aborted (NO_ODOM, NO_SCAN)")
+    stuck_timeout: float = positive(5.0, "[s] without progress until the goal is aborted (STUCK)")
+    stuck_distance: float = positive(0.01, "[m] closer to the goal by this much is progress")
+    stuck_angle: float = positive(0.05, "[rad] turned towards the goal by this much is progress, too")
+    goal_timeout: float = parameter(0.0, low=0.0, about="[s] until a goal is aborted (TIMEOUT); 0 = never")
 
     def conflicts(self) -> List[str]:
         """Combinations of values that are impossible, in words; empty when there are none."""

@@ -11,6 +11,7 @@ T = TypeVar("T")
 
 
 MODELS_OWN, PROFILES_OWN = "the model's value", "the profile's value"  # what a default of None stands for
+MIN_POSITIVE, MAX_POSITIVE = 1e-9, 1e6  # bounds of a number that only has to be greater than 0
 MAX_COORDINATE = 1e6  # [m] from the origin; beyond, single-precision messages no longer resolve centimetres
 
 
@@ -18,17 +19,20 @@ def parameter(
     default: Any = MISSING,
     low: Optional[float] = None,
     high: Optional[float] = None,
+    about: str = "",
     choices: Sequence[str] = (),
     otherwise: str = "",
     key: str = "",
+    live: bool = False,
 ) -> Any:
     """A dataclass field with its inclusive bounds or its choices; without a default the key is required.
 
-    `otherwise` says, for a default of None, what is used when the key is omitted. `key` is a key that Python does not
-    take as the field's name.
+    `about` is what param_docs writes about it: its unit in brackets, if it has one, then its meaning. `otherwise` says,
+    for a default of None, what is used when the key is omitted. `key` is a key that Python does not take as the field's
+    name. A `live` parameter can be changed while its node runs.
     """
     metadata = {"low": low, "high": high, "choices": tuple(choices), "otherwise": otherwise, "key": key}
-    return field(default=default, metadata=metadata)
+    return field(default=default, metadata={**metadata, "about": about, "live": live})
 
 
 def several(count: int = 0, low: Optional[float] = None, high: Optional[float] = None, default: Any = ()) -> Any:
@@ -36,9 +40,9 @@ def several(count: int = 0, low: Optional[float] = None, high: Optional[float] =
     return field(default=default, metadata={"low": low, "high": high, "count": count})
 
 
-def positive(default: Any = MISSING, high: float = 1e6, otherwise: str = "") -> Any:
+def positive(default: Any = MISSING, about: str = "", high: float = MAX_POSITIVE, otherwise: str = "") -> Any:
     """A field for a number greater than 0."""
-    return parameter(default, low=1e-9, high=high, otherwise=otherwise)
+    return parameter(default, MIN_POSITIVE, high, about, otherwise=otherwise)
 
 
 def group(cls: Type[T]) -> T:

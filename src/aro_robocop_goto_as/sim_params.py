@@ -1,9 +1,9 @@
 """All parameters of the simulator: the groups that its components declare, and which values exclude one another.
 
-A group is a frozen dataclass with every default and bound. It is beside the component that reads it, or here if that
-component is above this module. A field's name is the name of the ROS parameter, whatever the group; config/sim.yaml
-documents each one with its unit and source. A default of None means "not given": ROS parameters can't hold a null, so
-the key is simply left out.
+A group is a frozen dataclass with every default, bound and meaning. It is beside the component that reads it, or here
+if that component is above this module. A field's name is the name of the ROS parameter, whatever the group; param_docs
+writes config/sim.yaml from the groups. A default of None means "not given": ROS parameters can't hold a null, so the
+key is simply left out.
 """
 
 from dataclasses import dataclass
@@ -20,45 +20,62 @@ from .sensors.catalog import SensorParams
 class WorldParams:
     """Which world is simulated, and how."""
 
-    world: str = "stage_4"  # name or path of the world, or "random"
-    seed: int = parameter(1, low=1, high=2**31 - 1)  # of all noise, and of a random world
-    moving: bool = False  # whether scripted obstacles move
-    map_resolution: float = positive(0.05)  # [m] per cell of the published map
+    world: str = parameter(
+        "stage_4", about='NAME of worlds/NAME.sdf, "random", or the path of an SDF file or of a map\'s YAML'
+    )
+    seed: int = parameter(1, 1, 2**31 - 1, "of all noise and of a random world; the same seed gives the same noise")
+    moving: bool = parameter(False, about="true: scripted obstacles move, such as the cylinders of stage_3 and stage_4")
+    map_resolution: float = positive(0.05, "[m] per cell of the published map")
 
 
 @dataclass(frozen=True)
 class RobotParams:
-    """Which robots there are and where they start; the texts are parsed by world.spawn_texts."""
+    """Which robots there are, and where they start."""
 
-    model: str = DEFAULT_MODEL
-    spawn: str = ""
-    robots: str = ""
-    footprint_radius: Optional[float] = positive(None, high=100.0, otherwise=MODELS_OWN)  # [m]
+    model: str = parameter(DEFAULT_MODEL, about="NAME of urdf/NAME.urdf and config/models/NAME.yaml")
+    spawn: str = parameter("", about='"x y" or "x y yaw" in the world [m, rad]; empty: the world\'s own')
+    robots: str = parameter(
+        "",
+        about='empty: one, without a namespace; "N": robot_1 to robot_N; or "NAME[:MODEL] X Y [YAW]; ..." in the world',
+    )
+    footprint_radius: Optional[float] = positive(
+        None, "[m] of the disc that represents a kinematic robot", high=100.0, otherwise=MODELS_OWN
+    )
 
 
 @dataclass(frozen=True)
 class Rates:
     """The rates [Hz] of everything that is not a sensor."""
 
-    physics_rate: int = parameter(240, low=1, high=10000)
-    clock_rate: int = parameter(60, low=1)
-    control_rate: int = parameter(10, low=1)  # lockstep control ticks
+    physics_rate: int = parameter(240, 1, 10000, "[Hz] Bullet's default, at which motors and contacts are tuned")
+    clock_rate: int = parameter(60, low=1, about="[Hz] of /clock; 60 makes 0.1 s six ticks")
+    control_rate: int = parameter(
+        10, low=1, about="[Hz] of lockstep's control ticks; in lockstep it divides clock_rate"
+    )
 
 
 @dataclass(frozen=True)
 class TimeParams:
     """How simulated time starts and runs."""
 
-    real_time_factor: float = parameter(1.0, low=0.0, high=1e6)  # 0: as fast as possible
-    start_paused: bool = False
+    real_time_factor: float = parameter(
+        1.0, 0.0, 1e6, "simulated seconds per wall second; 0 = as fast as possible", live=True
+    )
+    start_paused: bool = parameter(False, about="true: simulated time stays at zero until ~unpause or ~step")
 
 
 @dataclass(frozen=True)
 class LockstepParams:
     """Whether simulated time waits for the controllers at each control tick, and for how long."""
 
-    sync: str = parameter("free", choices=("free", "lockstep"))
-    lockstep_timeout: float = positive(2.0)  # [s, wall]
+    sync: str = parameter(
+        "free",
+        choices=("free", "lockstep"),
+        about="lockstep: time waits at each control tick for all controllers' answers",
+    )
+    lockstep_timeout: float = positive(
+        2.0, "[s, wall] for a controller that answered the last two ticks; a miss is counted"
+    )
 
     @property
     def enabled(self) -> bool:
@@ -70,25 +87,42 @@ class LockstepParams:
 class FrameNames:
     """TF frames; of several robots, odom, base, scan and imu get the robot's name as a prefix."""
 
-    world_frame: str = "world"
-    map_frame: str = "map"
-    odom_frame: str = "odom"
-    base_frame: str = "base_footprint"
-    scan_frame: str = "base_scan"
-    imu_frame: str = "imu_link"
+    world_frame: str = parameter("world", about="of ground truth; coincides with map")
+    map_frame: str = parameter("map", about="REP-105")
+    odom_frame: str = parameter("odom", about="REP-105")
+    base_frame: str = parameter(
+        "base_footprint", about="REP-105's base_link, projected onto the floor; child of odom_frame"
+    )
+    scan_frame: str = parameter("base_scan", about="of the laser scanner")
+    imu_frame: str = parameter("imu_link", about="of the IMU")
 
 
 @dataclass(frozen=True)
 class TopicParams:
     """Which optional topics, transforms and services the node offers, and what they carry."""
 
-    localization: str = parameter("static", choices=("static", "truth", "none"))  # of map -> odom
-    initialpose: bool = True  # a pose on initialpose places the robot there, unless localization is left to others
-    odom_tf: bool = True
-    gazebo_services: bool = False
-    gazebo_topics: bool = False  # /gazebo/model_states, /gazebo/link_states, imu_service
-    publish_map: bool = False
-    covariances: str = parameter("gazebo", choices=("gazebo", "real"))  # of odom and imu; real: a TurtleBot3's
+    localization: str = parameter(
+        "static",
+        choices=("static", "truth", "none"),
+        about="map -> odom: static at the spawn pose; truth: always corrected; none: not published, for amcl or SLAM",
+    )
+    initialpose: bool = parameter(
+        True, about="a pose on initialpose (RViz's 2D Pose Estimate) places the robot; never with localization none"
+    )
+    odom_tf: bool = parameter(True, about="publish odom -> base_footprint on /tf (the original lab did not)")
+    gazebo_services: bool = parameter(False, about="offer /gazebo/get_model_state, ...; needs gazebo_msgs, see compat/")
+    gazebo_topics: bool = parameter(
+        False, about="publish /gazebo/model_states and /gazebo/link_states, offer imu_service"
+    )
+    publish_map: bool = parameter(
+        False,
+        about="publish /map, the world's cross-section at the lidar's height; a world made from a map always does",
+    )
+    covariances: str = parameter(
+        "gazebo",
+        choices=("gazebo", "real"),
+        about="of odom and imu. gazebo: of Gazebo's plugin and of the noise; real: as a TurtleBot3's firmware sends",
+    )
 
     @property
     def has_initialpose(self) -> bool:

@@ -8,12 +8,12 @@ from .plan import AGAIN, Plan
 from .record import Record
 
 LEFT_BEHIND = (
-    "with a node that had served others, and passed with a new one, which counts: an earlier mistake may have left "
-    "something behind"
+    "with a node that had served other scenarios, and passed with a new node, which counts (an earlier mistake may "
+    "have left something behind)"
 )
 WENT_WRONG = (
-    "although no mistake had come before it, and passed when it was repeated with a new node: what goes wrong in a "
-    "node that has served a goal, or has run for some time?"
+    "although no mistake had come before, and passed when repeated with a new node (what goes wrong in a node that has "
+    "served a goal, or has run for some time?)"
 )
 
 
@@ -27,7 +27,8 @@ def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Recor
     chosen = {name: record for name, record in records.items() if not name.endswith(AGAIN)}
     repeated = [name for name in chosen if name + AGAIN in records]
     best = {name: records.get(name + AGAIN, record) for name, record in chosen.items()}
-    order, counted, told = plan.scenarios_of("server"), [], []
+    order, counted = plan.scenarios_of("server"), []
+    told: Dict[str, List[str]] = {}  # names of scenarios, by what to say of them
     for name in repeated:
         mistakes = [it for it in best if it != name and _fails(plan, best[it])]
         is_left_behind = any(order.index(it) < order.index(name) or len(best[it].goals) > 1 for it in mistakes)
@@ -35,8 +36,8 @@ def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Recor
             chosen[name] = replace(best[name], name=name)
             counted.append(name)
         if not _fails(plan, best[name]):
-            told.append(f"scenario {name} failed {LEFT_BEHIND if is_left_behind else WENT_WRONG}")
-    return chosen, counted, told
+            told.setdefault(LEFT_BEHIND if is_left_behind else WENT_WRONG, []).append(name)
+    return chosen, counted, [f"failed {words}: {', '.join(names)}" for words, names in told.items()]
 
 
 def _fails(plan: Plan, record: Record) -> bool:

@@ -7,9 +7,9 @@ import traceback
 import zlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple
+from typing import Callable, List, Mapping, Optional, Sequence, Tuple
 
-from aro_robocop_goto_as.errors import RobocopError
+from aro_robocop_goto_as.errors import InstallationError, ParameterError, RobocopError
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
 from robocop_hosting import tree
@@ -17,10 +17,10 @@ from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
 from . import faults
-from .errors import GradingError, UngradableError
+from .errors import GradingError, GradingSetupError, PlanError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
-from .judge import CheckResult, Grade, Outcome, total
+from .grades import CheckResult, Grade, Outcome, scored
 from .plan import MIDDLE, Plan
 from .plan_file import load
 from .report.write import make_report_folder
@@ -29,23 +29,22 @@ from .sandbox.bubblewrap import Sandbox, expect_private, open_sandbox
 from .submission import prepare_submission
 from .texts import printable, printable_lines
 
-NO_GRADE = 3  # exit status: the machine had no time, or something was killed from outside
-INTERRUPTED = 130  # the shells' exit status for Ctrl-C
+# Exit statuses; 2 is argparse's, 130 is the shells'.
+NOT_EVERYTHING, WRONG_USE, NO_GRADE, NOT_GRADED, INTERRUPTED = 1, 2, 3, 4, 130
 SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
+WRONG_USES = (GradingSetupError, InstallationError, ParameterError, PlanError)
 MAX_SHOWN = 1_000  # characters of an error
-LABELS = {Outcome.PASSED: "passed", Outcome.FAILED: "FAILED", Outcome.NOT_REACHED: "not reached"}
 
 
-class Progress:
-    """Prints which scenario has begun, and its number among the scenarios of these parts."""
+def progress(plan: Plan, parts: Sequence[str]) -> Callable[[str, str], None]:
+    """What shows that a scenario of a part has begun, and its number among the scenarios of these parts."""
+    order = [(part, name) for part in parts if plan.examines(part) for name in plan.scenarios_of(part)]
 
-    def __init__(self, plan: Plan, parts: Sequence[str]) -> None:
-        self._order = [(part, name) for part in parts if plan.examines(part) for name in plan.scenarios_of(part)]
-
-    def begin(self, part: str, scenario: str) -> None:
-        """One scenario begins."""
+    def begin(part: str, scenario: str) -> None:
         reraise_if_interrupted()
-        _show(f"{self._order.index((part, scenario)) + 1}/{len(self._order)} {part}: {scenario}")
+        _show(f"{order.index((part, scenario)) + 1}/{len(order)} {part}: {scenario}")
+
+    return begin
 
 
 def _show(text: str) -> None:
@@ -58,23 +57,21 @@ def _show(text: str) -> None:
 
 def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
     """The grade for a terminal: failures first, what passed in one line; `next_steps` by part."""
-    lines, passed = [], [check for check in grade.checks if check.outcome is Outcome.PASSED]
-    not_reached: Dict[str, List[CheckResult]] = {}
-    for result in grade.failures_first[: len(grade.checks) - len(passed)]:
-        if result.outcome is Outcome.NOT_REACHED:
-            not_reached.setdefault(result.why, []).append(result)
-            continue
-        lines.append(f"{LABELS[result.outcome]:11}  {_points([result])}  {result.marked(result.sentence)}")
-        lines.append(f"{'':11}  {result.words}")
-    for why, results in not_reached.items():
-        names = ", ".join(result.marked(result.name) for result in results)
-        lines.append(f"{LABELS[Outcome.NOT_REACHED]:11}  {_points(results)}  {names}: {why}")
-    if passed:
-        every = len(passed) == len(grade.checks)
-        names = "every check" if every else ", ".join(check.marked(check.name) for check in passed)
-        lines.append(f"{LABELS[Outcome.PASSED]:11}  {_points(passed)}  {names}")
+    lines = []
+    for mistake in grade.mistakes:
+        check = mistake.check
+        lines.append(f"{'FAILED':13}  {_points([check])}  {check.marked(check.sentence)}")
+        lines.append(f"{'':13}  {check.words}")
+        if mistake.followers:
+            lines.append(f"{'':13}  {_points(mistake.followers)}  {mistake.consequences}")
+    for words, checks in grade.others.items():
+        outcome, _, why = words.partition(": ")
+        every = len(checks) == len(grade.checks)
+        names = "every check" if every else ", ".join(check.marked(check.name) for check in checks)
+        lines.append(f"{outcome:13}  {_points(checks)}  {names}{why and ': '}{why}")
     lines += [f"graded: {file}" for file in grade.files]
     lines += [f"problem: {problem}" for problem in grade.problems]
+    lines += [f"note: {note}" for note in grade.notes]
     lines += [f"fix first: {mistake.sentence}" for mistake in grade.mistakes[:1]]
     unfinished = {check.part for check in grade.checks if check.outcome is not Outcome.PASSED and not check.extra}
     lines += [f"next: {step}" for part, step in next_steps.items() if step and part in unfinished][:1]
@@ -83,9 +80,7 @@ def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
 
 
 def _points(checks: Sequence[CheckResult]) -> str:
-    """The points of checks, without extra ones unless all of them are."""
-    counted = [check for check in checks if not check.extra] or checks
-    return f"{total(it.points for it in counted):4g} / {total(it.points_available for it in counted):<4g}"
+    return "{:4g} / {:<4g}".format(*scored(checks))
 
 
 def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[str, List[str]]:
@@ -106,11 +101,18 @@ def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[
     return str(folder / given.name), unpacked.notes
 
 
+def report_folder(reports: Path, path: str, is_whole: bool) -> Path:
+    """The folder with the path of the submission as it was given: names of files alone are often the same."""
+    parts = [part for part in Path(os.path.normpath(path)).parts if part not in (os.sep, "//", os.pardir)]
+    folder = reports.joinpath(*(parts or [Path(os.path.realpath(path)).name]))
+    return folder if is_whole else folder.with_name(f"{folder.name}-only")
+
+
 def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog=typed("grade"), description=__doc__, allow_abbrev=False)
     parser.add_argument("path", help="a package, a server or bridge (a .py file), or a zip or tar archive of them")
-    parser.add_argument("--report", metavar="DIR", help="folder of the report (default: .robocop/reports/NAME)")
+    parser.add_argument("--report", metavar="DIR", help="folder of the report (default: .robocop/reports/PATH)")
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
     parser.add_argument("--seed", type=int, default=MIDDLE, metavar="N", help=SEED_HELP)
     parser.add_argument("--unsafe", action="store_true", help="run the submission without bubblewrap's sandbox")
@@ -120,17 +122,17 @@ def arguments() -> argparse.Namespace:
 
 def _plan(args: argparse.Namespace, share: Path) -> Plan:
     file = Path(args.plan).resolve() if args.plan else share / "config" / "grading.yaml"
-    return load(file, args.seed).restricted(args.only)
+    return load(file, args.seed).restricted([name for word in args.only for name in word.split(",") if name])
 
 
 def _kept_traceback(args: argparse.Namespace) -> Path:
     """The path of a file in the report's folder, to which the traceback of the present exception is written."""
-    folder = Path(args.report or places()[0] / "reports" / Path(os.path.realpath(args.path)).stem)
+    folder = Path(args.report or report_folder(places()[0] / "reports", args.path, not args.only))
     return faults.keep([traceback.format_exc()], make_report_folder(folder))
 
 
 def main() -> None:
-    """Exit status 0: every check passed; 1: one failed, or nothing can be graded; 3: no grade; 130: interrupted."""
+    """Exit with the status that docs/grading.md describes."""
     args = arguments()
     interrupt_on_signal()
     try:
@@ -146,27 +148,26 @@ def main() -> None:
             submission = prepare_submission(path, share, state, state / "grade", sandbox)
             submission = replace(submission, notes=[*submission.notes, *notes])
             if not any(plan.examines(script.part) for script in submission.scripts):
-                raise GradingError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
-            name = submission.name + ("" if plan.is_whole else "-only")
-            folder = given or make_report_folder(state / "reports" / name)
-            progress = Progress(plan, [script.part for script in submission.scripts])
-            runner = Runner(plan, state, sandbox, on_progress=progress.begin)
-            grade = grade_submission(runner, submission, folder, keep=True)
+                raise GradingSetupError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
+            folder = given or make_report_folder(report_folder(state / "reports", args.path, plan.is_whole))
+            on_progress = progress(plan, [script.part for script in submission.scripts])
+            runner = Runner(plan, state, sandbox, on_progress)
+            grade = grade_submission(runner, submission, folder)
     except UngradableError as error:
         print(f"robocop grade: no grade: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(NO_GRADE)
     except RobocopError as error:
         print(f"robocop grade: {printable_lines(str(error))}", file=sys.stderr)
-        sys.exit(1)
+        sys.exit(WRONG_USE if isinstance(error, WRONG_USES) else NOT_GRADED)
     except KeyboardInterrupt:
         ignore_all()
         sys.exit(INTERRUPTED)
     except Exception as error:  # the grader failed on this submission
         print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MAX_SHOWN]}", file=sys.stderr)
         print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
-        sys.exit(1)
+        sys.exit(NO_GRADE)
     print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)
     print(as_text(grade, {script.part: script.next_step for script in submission.scripts}))
     print(f"scenarios: seed {plan.seed}")
     print(printable(f"report: {folder / 'report.html'}"))
-    sys.exit(0 if grade.all_right else 1)
+    sys.exit(0 if grade.all_right else NOT_EVERYTHING)

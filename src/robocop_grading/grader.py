@@ -4,14 +4,14 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Mapping
+from typing import Dict, List, Mapping, Optional
 
 from aro_robocop_goto_as.suggestions import did_you_mean
 from robocop_hosting.tree import remove, temporary_folder
 
 from . import judge
 from .errors import UngradableError
-from .judge import Grade
+from .grades import Grade, completed
 from .record import Record
 from .report import write as report
 from .runner import Recorded, Runner
@@ -30,29 +30,30 @@ _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
 EXCUSE = " (is the machine short of memory?)"
 
 
-def grade(runner: Runner, submission: Submission, folder: Path, keep: bool = False) -> Grade:
-    """Write the report, and the bags of failed scenarios, to `folder`.
+def grade(runner: Runner, submission: Submission, folder: Path, place: Optional[Path] = None) -> Grade:
+    """Write the report and the bags to `folder`.
 
-    `keep`: the report stays in its folder, and gets the bags of all scenarios. A part that is killed is run once more.
+    `place`: where the folder will be moved, with the bags of failed scenarios only. A part that is killed is run again.
     UngradableError if the part is killed again and may not be to blame, or if the machine has no time for it.
     """
     plan = runner.plan
     records: Dict[str, Mapping[str, Record]] = {}
     problems: Dict[str, str] = {}
     with temporary_folder("robocop-grade-") as work:
-        notes = list(submission.notes) if plan.is_whole else [NOT_WHOLE]
+        notes = [] if plan.is_whole else [NOT_WHOLE]
         for script in (script for script in submission.scripts if plan.examines(script.part)):
             recorded = _run(runner, submission, script, Path(work, script.part), notes)
             records[script.part], problems[script.part] = recorded.records, recorded.problem
             notes += [f"{script.part}: {it}" for it in (*recorded.told, *_missing_modules(recorded.records))]
-        judged = judge.judge(submission.name, plan, records, problems)
-        judged = replace(judged, files=tuple(submission.files), problems=(*judged.problems, *notes))
+        judged = completed(judge.judge(submission.name, plan, records, problems), plan)
+        told = dict.fromkeys([*judged.notes, *notes, *(submission.notes if plan.is_whole else ())])
+        judged = replace(judged, files=tuple(submission.files), notes=tuple(told))
         folder.mkdir(parents=True, exist_ok=True)
         failed = {f"{check.part}-{check.scenario}" for check in judged.checks if check.failure is not None}
         for bag in sorted(Path(work).glob("*/*.bag")):
-            if keep or bag.stem in failed:
+            if place is None or bag.stem in failed:
                 shutil.copyfile(bag, folder / bag.name)
-        report.write(judged, plan, records, folder, keep)
+        report.write(judged, plan, records, folder, place)
     return judged
 
 

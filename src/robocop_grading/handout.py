@@ -39,3 +39,8 @@ class Limits:
     stall_distance: float = parameter(0.01, low=0)
     stall_angle: float = parameter(0.05, low=0)
     goal_time: float = parameter(400.0, low=0)
+
+    @property
+    def status_period(self) -> float:
+        """The longest time [s] from one report of the bridge to the next."""
+        return self.status_span / max(1, self.status_reports)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Optional
 
 from aro_robocop_goto_as.errors import RobocopError
+from aro_robocop_goto_as.names import robocop
 from aro_robocop_goto_as.process.start import typed
 from robocop_hosting.workspace import places
 
@@ -81,6 +82,6 @@ def main() -> None:
     path = shlex.quote(str(folder))
     print(
         f"Created {folder}. Complete the TODOs in its scripts/ folder.\n"
-        f"Run it:   ./robocop sim --with {path}\n"
-        f"Grade it: ./robocop grade {path}"
+        f"Run it:   {robocop()} sim --with {path}\n"
+        f"Grade it: {robocop()} grade {path}"
     )

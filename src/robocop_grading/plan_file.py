@@ -63,7 +63,9 @@ def load(path: Path, seed: int = MIDDLE) -> Plan:
         raise PlanError(f"--seed {seed}: expected a number from {MIDDLE} to {MAX_SEED}")
     try:
         raw = yaml.safe_load(read_bytes(path).decode("utf-8"))
-    except (HostingError, ValueError, RecursionError, yaml.YAMLError) as error:
+    except HostingError as error:  # names the path
+        raise PlanError(str(error)) from error
+    except (ValueError, RecursionError, yaml.YAMLError) as error:
         raise PlanError(f"{path}: {error}") from error
     file = _loaded(_File, raw, f"{path}")
     scenarios = tuple(_scenario(entry, f"{path}: scenarios", seed) for entry in file.scenarios)

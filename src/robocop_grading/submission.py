@@ -3,12 +3,13 @@
 import os
 import sys
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Iterator, List, Mapping, Optional, Sequence
 
 from aro_robocop_goto_as.errors import RobocopError
 from robocop_hosting import workspace
+from robocop_hosting.errors import HostingError
 from robocop_hosting.launch_file import READER
 from robocop_hosting.package import MAX_NAMED, Package, Started, find_package, started
 from robocop_hosting.scripts import (
@@ -30,12 +31,14 @@ from robocop_hosting.workspace import Environment, compat_environment, places, w
 
 from .advice import advice, next_todo
 from .errors import GradingError
+from .files.exports import SEVERAL, holds_class
 from .new import SKELETON, make
 from .sandbox.bubblewrap import Sandbox, expect_private
 from .sandbox.build import build, runner_in
 
 LAB = "aro_robocop_goto_as"
 AGENT = Path(__file__).resolve().parent / "agent"
+CPP = (".cc", ".cpp", ".cxx")  # suffixes
 CHANNEL = "CHANNEL"  # stands for the argument with which the agent reaches the grader
 
 
@@ -91,18 +94,40 @@ def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbo
         return _loose({part: Choice(top, None, False, [])}, top, share, state)
     if not top.is_dir():
         raise GradingError(f"{path}: expected a package, a server's or a bridge's file, but nothing is there")
-    if not any(file.name == "package.xml" for file in files_below(top)):
-        choices = choose(top)
-        if choices:
-            return _loose(choices, top, share, state)
-    return _package(find_package(str(top)), share, state, builds, sandbox)
+    sources = [str(file.relative_to(top)) for file in files_below(top) if file.suffix in CPP]
+    try:
+        submission = _folder(top, share, state, builds, sandbox)
+    except (GradingError, HostingError) as error:
+        if not sources:
+            raise
+        raise GradingError(f"{_about_cpp(sources)}\n{error}") from error
+    return replace(submission, notes=[*submission.notes, _about_cpp(sources)]) if sources else submission
+
+
+def _about_cpp(sources: Sequence[str]) -> str:
+    return f"{', '.join(sources[:MAX_NAMED])}: C++ is not graded, only a server and a bridge in Python"
+
+
+def _folder(top: Path, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
+    """A package, or a folder with single files."""
+    try:
+        has_package = any(file.name == "package.xml" for file in files_below(top))
+        choices = {} if has_package else choose(top)
+        package = None if choices else find_package(str(top))
+    except HostingError as error:
+        if not holds_class(top):
+            raise
+        raise HostingError(f"{error}; {SEVERAL}") from error
+    if package is None:
+        return _loose(choices, top, share, state)
+    return replace(_package(package, share, state, builds, sandbox), name=top.name)
 
 
 def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -> Submission:
     """Single files in `top`, run in place, on top of the skeleton's package."""
-    name, folder = (top.stem, top.parent) if top.is_file() else (top.name, top)
+    folder = top.parent if top.is_file() else top
     reads = [top, _lab_folder(state)]  # `top` may contain helper modules
-    return _ready(name, folder, reads, lab_environment(share, state), Started(choices, {}, ()), is_loose=True)
+    return _ready(top.name, folder, reads, lab_environment(share, state), Started(choices, {}, ()), is_loose=True)
 
 
 def _ready(
@@ -111,6 +136,8 @@ def _ready(
     scripts = [_script(part, choice, top) for part, choice in found.choices.items()]
     notes = [*found.notes, *_ungraded_bridge(found.choices)]
     for script in scripts:
+        others = ", ".join(str(other.relative_to(top)) for other in found.choices[script.part].others)
+        notes += [f"{script.part}: {script.path.relative_to(top)} is graded, but not {others}"] if others else []
         notes += _obstacles(script.part, found.choices[script.part], is_loose)
         notes += [f"{script.part}: {script.path.name}, {text}" for text in advice(read_text(script.path))]
     return Submission(name, reads, environment, scripts, found.parameters, notes)
@@ -119,8 +146,6 @@ def _ready(
 def _script(part: str, choice: Choice, top: Path) -> Script:
     node, name = choice.node, str(choice.path.relative_to(top))
     shown = name if node is None else f"{name}, started by {node.place}"
-    if choice.others:
-        shown += f"; not graded: {', '.join(str(other.relative_to(top)) for other in choice.others)}"
     todo = next_todo(read_text(choice.path))
     return Script(
         part,

@@ -31,6 +31,7 @@ class LaunchNode:
     environment: Mapping[str, str] = field(default_factory=dict)
     not_done: List[str] = field(default_factory=list)  # attributes that have no effect in a grading
     is_own: bool = True  # in a file of the package, not in one that it includes from another one
+    is_found: bool = True  # its program, by roslaunch
 
     @property
     def variables(self) -> Environment:

@@ -4,7 +4,7 @@ import contextlib
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Collection, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Callable, Collection, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.names import PACKAGE
 
@@ -47,10 +47,11 @@ def arguments_of(launch_file: Optional[Path]) -> List[str]:
     return [entry.get("name", "") for entry in read_xml(launch_file).iter("arg") if entry.get("value") is None]
 
 
-def find_package(path: str, launch: str = "") -> Package:
-    """The package at `path`, or the only one below it; if there are several, the one with the lab's name.
+def find_package(path: str, launch: str = "", beside: bool = False) -> Package:
+    """The package at `path`, or below it; of several the one with the lab's name, or with something to start.
 
-    `launch` is the name of the launch file to start. HostingError says what was found instead.
+    `launch` is the name of the launch file to start; `beside`: what it needs may lie beside it, outside of `path`.
+    HostingError says what was found instead.
     """
     top = Path(path).expanduser()
     if not top.is_dir():
@@ -59,15 +60,7 @@ def find_package(path: str, launch: str = "") -> Package:
     if not manifests:
         raise HostingError(f"{path}: no package.xml in it or below it; expected the folder of a catkin package")
     named = [(_name(manifest), manifest.parent) for manifest in manifests]
-    chosen = named if len(named) == 1 else [entry for entry in named if entry[0] == PACKAGE]
-    if len(chosen) > 1:
-        chosen = [entry for entry in chosen if not ASIDE.search(str(entry[1].relative_to(top.resolve())))] or chosen
-    if len(chosen) != 1:
-        raise HostingError(
-            f"{path}: {len(named)} packages found, give the path of one: "
-            + ", ".join(str(folder) for _, folder in named)
-        )
-    name, folder = chosen[0]
+    name, folder = _chosen(path, named, launch)
     if not NAME.fullmatch(name):
         raise HostingError(f"{folder}/package.xml: expected a <name> of letters, digits, _ and -, got {name!r}")
     launch_file, launch_files = _launch_file(folder, launch)
@@ -79,7 +72,43 @@ def find_package(path: str, launch: str = "") -> Package:
             f"or one that makes an action server; found: {', '.join(scripts[:MAX_NAMED]) or 'no Python script'}"
             + (f", and launch files, of which sim --with starts one by --launch NAME: {others}" if others else "")
         )
+    neighbours = sorted(folder.parent.glob("*/package.xml")) if beside else []
+    for manifest in neighbours:
+        with contextlib.suppress(HostingError):  # of a package that may not be needed
+            named.append((_name(manifest), manifest.parent))
     return Package(name, folder, launch_file, launch_files, _needed(name, folder, named))
+
+
+def _chosen(path: str, named: Sequence[Tuple[str, Path]], launch: str) -> Tuple[str, Path]:
+    """Name and folder of the one of these packages that is meant; HostingError if nothing says which."""
+    top = Path(path).expanduser().resolve()
+    rules: Sequence[Callable[[str, Path], bool]] = (
+        lambda name, folder: bool(launch) and can_start(folder, launch),
+        lambda name, folder: name == PACKAGE,
+        lambda name, folder: not ASIDE.search(str(folder.relative_to(top))),
+        lambda name, folder: can_start(folder, launch),
+    )
+    left = list(named)
+    for rule in rules:
+        if len(left) > 1:
+            left = [entry for entry in left if rule(*entry)] or left
+    if len(left) > 1:
+        shown = (f"{folder} ({name}: {_launch_names(folder)})" for name, folder in left[:MAX_NAMED])
+        raise HostingError(f"{path}: {len(left)} packages found, give the path of one: {', '.join(shown)}")
+    return left[0]
+
+
+def can_start(folder: Path, launch: str) -> bool:
+    """Return whether a package has the launch file of this name, or without a name something that would be started."""
+    try:
+        return _launch_file(folder, launch)[0] is not None or bool(choose(folder, expects_one=False))
+    except HostingError:
+        return not launch  # several files could be the one: that is reported if the package is chosen
+
+
+def _launch_names(folder: Path) -> str:
+    names = sorted({path.name for path in files_below(folder) if path.suffix == ".launch"})
+    return ", ".join(names[:MAX_NAMED]) or "no launch file"
 
 
 def _needed(name: str, folder: Path, named: Sequence[Tuple[str, Path]]) -> Mapping[str, Path]:

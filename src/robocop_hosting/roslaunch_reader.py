@@ -4,7 +4,10 @@ It is a separate program, because launch files can run commands. It imports noth
 """
 
 import json
+import os
+import reprlib
 import shlex
+import stat
 import sys
 import traceback
 import xmlrpc.client
@@ -16,8 +19,11 @@ del sys.path[0]  # the grader's modules: not to be found in place of others
 from roslaunch.config import ROSLaunchConfig  # noqa: E402
 from roslaunch.core import Node  # noqa: E402
 from roslaunch.xmlloader import XmlLoader  # noqa: E402
+from roslib.packages import find_node  # noqa: E402
+from rospkg import ResourceNotFound  # noqa: E402
 
 MAX_SHOWN = 100  # characters of a parameter in a message
+MAX_VALUES = 100_000  # in a parameter
 Tags = List[Tuple[str, Dict[str, str], int]]  # name, attributes, line
 
 
@@ -80,7 +86,24 @@ def as_values(node: Node) -> Dict[str, Any]:
         "not_done": list(not_done(node)),
         "file": node.filename,
         "line": line_of_node(node),
+        "is_found": _is_found(node),
     }
+
+
+def _is_found(node: Node) -> bool:
+    """Return whether roslaunch finds the node's program on this machine."""
+    try:
+        return bool(find_node(node.package, node.type))
+    except ResourceNotFound:
+        return False
+
+
+def count(value: Any, known: Dict[int, int]) -> int:
+    """The values in a value, those of a YAML alias counted wherever it stands; `known`: counts by id()."""
+    if id(value) not in known:
+        inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+        known[id(value)] = 1 + sum(count(it, known) for it in inner)
+    return known[id(value)]
 
 
 def read(path: str, arguments: List[str]) -> Dict[str, Any]:
@@ -101,13 +124,25 @@ def read(path: str, arguments: List[str]) -> Dict[str, Any]:
     parameters = {str(name): parameter.value for name, parameter in config.params.items()}
     for name, value in parameters.items():
         try:
+            if count(value, {}) > MAX_VALUES:
+                raise ValueError(f"more than {MAX_VALUES} values: does an alias (*name) of YAML repeat too much?")
             xmlrpc.client.dumps((value,))  # as the parameter server gets it
             json.dumps(value)
         except (TypeError, ValueError, OverflowError, RecursionError) as error:
-            shown = str(value)[:MAX_SHOWN]
+            shown = (reprlib.repr(value) if isinstance(value, (dict, list)) else str(value))[:MAX_SHOWN]
             return {"error": f"{name}: {shown} can't be a parameter: {error}", "file": path, "line": 0}
     return {"nodes": nodes, "parameters": parameters, "warnings": list(map(str, config.config_errors))}
 
 
+def expect_file(event: str, arguments: Tuple[Any, ...]) -> None:
+    """Refuse to open a pipe or a device, which would not end (an audit hook of Python)."""
+    path = arguments[0] if event == "open" else None
+    if isinstance(path, (str, bytes)) and path != os.devnull and os.path.exists(path):
+        mode = os.stat(path).st_mode
+        if stat.S_ISFIFO(mode) or stat.S_ISCHR(mode):
+            raise ValueError(f"{os.fsdecode(path)}: expected an ordinary file")
+
+
 if __name__ == "__main__":
+    sys.addaudithook(expect_file)
     print(json.dumps(read(sys.argv[1], sys.argv[2:])))

@@ -57,7 +57,12 @@ class _Candidate:
 
 def part_of(path: Path, top: Path) -> str:
     """ "server", "bridge", or "" for a file in `top` that is neither."""
-    return PARTS.get(path.name) or _part_by_content(read_bytes(path, top))[0]
+    return PARTS.get(path.name) or _part_by_content(read_bytes(path, top))[0] or _part_by_name(path.name)
+
+
+def _part_by_name(name: str) -> str:
+    """The part of which a script has the name with something added, as in robocop_goto_as_final.py, or ""."""
+    return next((part for it, part in PARTS.items() if name.startswith(it[: -len(".py")]) and name.endswith(".py")), "")
 
 
 def _part_by_content(content: bytes) -> Tuple[str, bool]:
@@ -152,6 +157,8 @@ def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[by
         modules = [found for other, found in parts.items() if found[0] and other != path and other.stem in imports]
         own = (PARTS[path.name], True) if path.name in PARTS else parts[path]
         part, is_sure = own if own[0] else max(modules, default=own)
+        if not part:
+            part, is_sure = _part_by_name(path.name), True
         if part and (is_sure or node is not None):
             is_aside, *place = best_place(path, top, "scripts")
             is_installed = os.path.realpath(os.fsencode(path)) in installed

@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import re
 import shlex
 import signal
 import sys
@@ -13,12 +14,15 @@ from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 from aro_robocop_goto_as.process.start import typed
 
+from . import debian
 from .errors import HostingError
-from .package import Package, Started, arguments_of, find_package, names_gazebo, started
+from .node_errors import NodeErrors
+from .package import GAZEBO, Package, Started, arguments_of, find_package, names_gazebo, started
 from .scratch import scratch_folder
 from .scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, obstacles
 from .workspace import Environment, build, compat_environment, places, run_plain, workspace_name
 
+NOT_FOUND = re.compile(r'(?:configuration file provided by "|Could NOT find )(\w+)')  # by CMake
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
 
@@ -28,7 +32,15 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
     HostingError if roslaunch can't start one of its scripts, with the reason.
     """
     folder = state / "with" / workspace_name(package.path)
-    environment = build(package.sources, folder, compat_environment(share, state))
+    underlay = compat_environment(share, state)
+    try:
+        environment = build(package.sources, folder, underlay)
+    except HostingError as error:
+        missing = dict.fromkeys(NOT_FOUND.findall(str(error)))
+        if not missing:
+            raise
+        lacks = "; ".join(f"CMake finds no {name}: {debian.remedy(name, '(lib{0}-dev|ros-{0})')}" for name in missing)
+        raise HostingError(f"{package.name} can't be built: {lacks} (full log: {folder}/build.log)") from error
     words = [f"{name}:={value}" for name, value in arguments.items()]
     try:
         found = started(package, folder, environment, run_plain, words)
@@ -38,6 +50,10 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
         raise
     if found.starts_gazebo:
         _tell(instead_of_gazebo(package))
+    for node in found.others:
+        if not (node.is_found or GAZEBO.search(node.package)):
+            hint = debian.remedy(node.package, "(ros-|python3-)?{}(-tools)?")
+            _tell(f"{node.place}: there is no {node.type} of the package {node.package} on this machine; {hint}")
     for choice in found.choices.values():
         if not choice.is_installed and (choice.node is not None or package.launch_file is None):
             make_startable(choice, folder / "src")
@@ -138,7 +154,7 @@ def main() -> None:
     interrupt_on_signal()
     try:
         state, share = places()
-        package = find_package(args.path, args.launch)
+        package = find_package(args.path, args.launch, beside=True)
         for_package, for_simulator = sort_arguments(
             package, args.arguments, arguments_of(share / "launch" / "robocop_sim.launch")
         )
@@ -162,4 +178,5 @@ def main() -> None:
 
     os.environ.clear()
     os.environ.update({**environment, **tmpdir, "ROBOCOP_SIM_ARGS": for_simulator})
-    launch.main([*([] if args.verbose else ["--no-summary"]), "--overview", str(path)])
+    with NodeErrors({folder / "src" / name: original for name, original in package.sources.items()}) as node_errors:
+        launch.main([*([] if args.verbose else ["--no-summary"]), "--overview", str(path)], node_errors.show)

@@ -16,6 +16,8 @@ from xml.etree import ElementTree
 from .errors import HostingError
 
 MAX_SIZE = 1024**2  # bytes of a manifest, launch file or script
+POINTER = b"version https://git-lfs"  # beginning of a file that stands for another one, which a server of Git LFS has
+IS_POINTER = "this is a pointer of Git LFS, the file itself was not handed in"
 GENERATED = ("build", "devel", "install", "logs", "__pycache__", "__MACOSX")  # folders that nobody has written
 MAX_DEPTH = 100  # nested folders; packages and their builds have ten or so
 
@@ -52,7 +54,7 @@ def temporary_folder(prefix: str) -> Iterator[Path]:
 
 
 def read_bytes(path: Path, top: Optional[Path] = None) -> bytes:
-    """The content of a regular file; HostingError for a pipe, a device, or more than a megabyte.
+    """The content of a regular file; HostingError for a pipe, a device, a pointer of Git LFS, or more than a megabyte.
 
     With `top`, the file also has to be inside that folder after all links in its path are followed.
     """
@@ -68,6 +70,8 @@ def read_bytes(path: Path, top: Optional[Path] = None) -> bytes:
         raise HostingError(f"{path}: can't be read, expected an ordinary file: {error.strerror}") from error
     if len(content) > MAX_SIZE:
         raise HostingError(f"{path}: expected less than {MAX_SIZE // 1024} kB")
+    if content.startswith(POINTER):
+        raise HostingError(f"{path}: {IS_POINTER}")
     return content
 
 

@@ -25,6 +25,8 @@ CHAINED = ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "PYTHONPAT
 COMPAT = ("aro_sim", "gazebo_msgs", "ros_numpy")
 LEFT_OUT = (".git", "__pycache__", "build", "devel", ".robocop")
 NOT_COPIED = shutil.ignore_patterns(*LEFT_OUT, "*.pyc")
+LANGUAGES = ("cpp", "eus", "lisp", "nodejs", "py")
+CPP = (".cc", ".cpp", ".cxx")
 LOG_LINES = 25  # of a failed build's log that are shown
 MAX_SHOWN = 4_000  # characters of them
 MAX_READ = 200_000  # bytes of a log's end
@@ -96,17 +98,20 @@ def build(sources: Mapping[str, Path], folder: Path, underlay: Environment) -> E
     An earlier build is reused. HostingError shows the end of the log of a build that failed.
     """
     copy_sources(sources, folder)
-    return make(folder, " and ".join(sources), underlay)
+    has_cpp = any(Path(it).suffix in CPP for _, _, files in tree.walk(folder / "src") for it in files)
+    return make(folder, " and ".join(sources), underlay, languages=("py", "cpp") if has_cpp else ("py",))
 
 
-def make(folder: Path, names: str, underlay: Environment, run: Run = run_plain) -> Environment:
-    """As build(), but the sources are already in place."""
+def make(
+    folder: Path, names: str, underlay: Environment, run: Run = run_plain, languages: Sequence[str] = ("py",)
+) -> Environment:
+    """As build(), but the sources are already in place; messages are generated for these languages only."""
     log = folder / "build.log"
     tree.remove(log)  # whatever an earlier build made of it: open() would follow a link
     with open(log, "w+b") as output:
         status = run(
             ["catkin_make", "-C", str(folder), f"-DPYTHON_EXECUTABLE={sys.executable}", "-DCATKIN_ENABLE_TESTING=OFF"],
-            {**underlay, "ROS_LANG_DISABLE": "gencpp:geneus:genlisp:gennodejs"},
+            {**underlay, "ROS_LANG_DISABLE": ":".join(f"gen{it}" for it in LANGUAGES if it not in languages)},
             output,
             output,
         )

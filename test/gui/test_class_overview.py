@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 from browser import chromium
 
-from robocop_grading.classroom.results import SHOWN, Result, page
-from robocop_grading.judge import CheckResult, Outcome
+from robocop_grading.classroom.results import SHOWN, StoredGrade, page
+from robocop_grading.grades import CheckResult, Outcome
 from robocop_grading.plan_file import load
 
 PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")
@@ -17,7 +17,9 @@ NAMES = "() => [...document.querySelectorAll('#hand_ins tbody tr:not([hidden])')
 @pytest.mark.slow
 def test_overview_is_searched_sorted_and_shown_in_full(tmp_path):
     results = [
-        Result(f"s{number:03}", (CheckResult("cancel", "server", "", Outcome.PASSED, float(number % 7), 7.0, False),))
+        StoredGrade(
+            f"s{number:03}", (CheckResult("cancel", "server", "", Outcome.PASSED, float(number % 7), 7.0, False),)
+        )
         for number in range(COUNT)
     ]
     (tmp_path / "index.html").write_text(page("class", results, PLAN, {"zoe": "waiting"}, running=False))

@@ -20,6 +20,27 @@ def test_goal_is_reached_in_a_system_started_for_it(goto):
     assert "SUCCEEDED: REACHED: " in command.output
 
 
+def test_launch_arguments_choose_its_simulator(goto):
+    command = goto("0.15", "0", "robots:=red 0 0", "--robot", "red", "world:=empty")
+    assert command.wait_for_exit() == 0, command.output
+    assert "in red/odom after" in command.output
+
+
+@pytest.mark.parametrize(
+    "word, message",
+    [
+        ("wrld:=empty", "there is no argument wrld; "),
+        ("robot:=red", "did you mean --robot red?"),
+        ("drive:=wheel", "drive: "),
+        ("7", "expected NAME:=VALUE"),
+    ],
+)
+def test_impossible_launch_arguments_are_refused_and_nothing_is_started(goto, word, message):
+    command = goto("1", "0", word)
+    assert command.wait_for_exit() == 2
+    assert message in command.output and "starting" not in command.output
+
+
 def test_a_robots_name_is_refused_where_no_system_runs(goto):
     command = goto("0.5", "0.2", "--robot", "red")
     assert command.wait_for_exit() == 1
@@ -71,7 +92,7 @@ def test_terminated_on_its_way_it_reports_how_the_goal_ended(goto):
 def test_unknown_world_is_a_wrong_argument_and_nothing_is_started(goto):
     command = goto("1", "0", "--world", "stag_1")
     assert command.wait_for_exit() == 2
-    assert "--world: there is no world 'stag_1'" in command.output
+    assert "there is no world 'stag_1'" in command.output
     assert "did you mean stage_1?" in command.output and "starting" not in command.output
 
 

@@ -7,8 +7,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from systems import Program
+from systems import Program, System
 
+from aro_robocop_goto_as.probes.master import running_node, unheard
 from robocop_grading import new
 
 NODES = Path(__file__).resolve().parent / "nodes"
@@ -134,3 +135,52 @@ def test_exit_status_is_1_when_the_simulator_refuses_its_arguments(hosted):
     system = hosted("scan_profile:=no_such")
     assert system.process.wait(DEADLINE) == 1, system.output
     assert "scan_profile" in system.output and system.processes() == []
+
+
+MANIFEST = """<package format="2"><name>{}</name><version>0.0.1</version><description>d</description>
+<maintainer email="a@example.com">m</maintainer><license>BSD</license><buildtool_depend>catkin</buildtool_depend>{}
+</package>"""
+WORKSPACE = {
+    "drive/package.xml": MANIFEST.format("drive", "<depend>rospy</depend><depend>drive_msgs</depend>"),
+    "drive/CMakeLists.txt": "cmake_minimum_required(VERSION 3.10)\nproject(drive)\n"
+    "find_package(catkin REQUIRED COMPONENTS drive_msgs)\ncatkin_package()\n",
+    "drive/launch/drive.launch": '<launch><node pkg="drive" type="drive.py" name="drive"/>\n'
+    '<node pkg="tf" type="static_transform_publisher" name="gripper" args="0 0 0 0 0 0 base_link gripper 100"/>\n'
+    '<node pkg="no_such_package" type="a" name="b"/></launch>\n',
+    "drive/scripts/drive.py": "#!/usr/bin/env python3\nfrom drive_msgs.msg import Side\nraise ValueError(Side(1.5))\n",
+    "drive_msgs/package.xml": MANIFEST.format("drive_msgs", "<depend>std_msgs</depend>"),
+    "drive_msgs/CMakeLists.txt": "cmake_minimum_required(VERSION 3.10)\nproject(drive_msgs)\n"
+    "find_package(catkin REQUIRED COMPONENTS message_generation std_msgs)\nadd_message_files(FILES Side.msg)\n"
+    "generate_messages(DEPENDENCIES std_msgs)\ncatkin_package()\n",
+    "drive_msgs/msg/Side.msg": "float32 length\n",
+}
+
+
+def test_node_with_its_neighbours_messages_ends_and_is_named_below_the_overview(tmp_path):
+    for name, text in WORKSPACE.items():
+        (tmp_path / "ws" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "ws" / name).write_text(text)
+    script = tmp_path / "ws" / "drive" / "scripts" / "drive.py"
+    script.chmod(0o755)
+    with Hosted(tmp_path / "ws", tmp_path) as system:
+        system.wait_until(lambda: "drive has ended" in system.output, "the end of a node")
+        assert running_node(system.uri, "/gripper"), system.output
+        above, _, below = system.output.partition("all messages  appear below\n")
+        assert f"drive has ended: ValueError: length: 1.5 ({script}, line 3)" in below
+        assert f'File "{script}", line 3' in above and "process has died" not in above
+        assert "launch/drive.launch, line 3: there is no a of the package no_such_package on this machine" in above
+        done = system.call("rosrun", "aro_robocop_goto_as", "robocop_goto.py", "0.3", "0.3")
+        assert "start the system again" in done.stdout and "rosrun" not in done.stdout, done.stdout
+        system.end()
+
+
+def test_commands_of_a_turtlebot_2_drive_its_model_and_others_that_no_robot_hears_are_known(tmp_path):
+    with System(tmp_path) as system:
+        system.start_master()
+        arguments = ("_model:=turtlebot2", "_world:=empty", "_drive:=kinematic")
+        simulator = system.start("sim", "rosrun", "aro_robocop_goto_as", "robocop_sim.py", *arguments)
+        for topic in ("/cmd_vel_mux/input/navi", "/navi"):
+            twist = ("geometry_msgs/Twist", "{linear: {x: 0.2}}")
+            system.start(topic.replace("/", "_"), "rostopic", "pub", "-r", "10", topic, *twist)
+        system.wait(lambda: unheard(system.uri, twist[0]) == ["/navi"], "its publisher", simulator)
+        system.wait(lambda: system.latest("/odom")["pose"]["pose"]["position"]["x"] > 0.05, "it drives", simulator)

@@ -92,14 +92,14 @@ echo '/own: [[[['
 """
 LIE = """
 import struct, sys
-channel, scheduler = sys.modules['robocop_agent.channel'], sys.modules['robocop_agent.scheduler']
-wire, write = sys.modules['robocop_agent.wire'], channel.Channel._write
+channel, scheduler = sys.modules['robocop_agent.request_loop'], sys.modules['robocop_agent.scheduler']
+wire, write = sys.modules['robocop_agent.wire'], channel.RequestLoop._write
 def replace(replaced, lie):
     def written(self, kind, body):
         if kind == replaced:
             return lie(self, body)
         write(self, kind, body)
-    channel.Channel._write = written
+    channel.RequestLoop._write = written
 """
 LIES = {  # code after LIE, and what the report says
     "two_threads_silence": (
@@ -109,9 +109,9 @@ LIES = {  # code after LIE, and what the report says
         "it stopped answering",
     ),
     "done_before_it_is": (
-        "read = channel.Channel._read\ndef hasty(self):\n    kind, body = read(self)\n    if kind == wire.GO:\n"
+        "read = channel.RequestLoop._read\ndef hasty(self):\n    kind, body = read(self)\n    if kind == wire.GO:\n"
         "        write(self, wire.DONE, wire.TIMES.pack(wire.TIMES.unpack_from(body)[0], 1 << 62))\n"
-        "    return kind, body\nchannel.Channel._read = hasty\nreplace(wire.DONE, lambda self, body: None)",
+        "    return kind, body\nchannel.RequestLoop._read = hasty\nreplace(wire.DONE, lambda self, body: None)",
         "it stopped answering",
     ),
     # These are graded: nothing of it counts, or only as a topic that nobody hears.

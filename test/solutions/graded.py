@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Callable, Sequence
 
 from robocop_grading import judge
-from robocop_grading.judge import Grade
+from robocop_grading.grades import Grade
 from robocop_grading.plan_file import load
 from robocop_grading.runner import BUDGET, Recorded, Runner
 from robocop_grading.sandbox.bubblewrap import Sandbox, open_sandbox

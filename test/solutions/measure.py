@@ -38,7 +38,7 @@ from wrong_solutions import WRONG
 
 from aro_robocop_goto_as.errors import RobocopError
 from robocop_grading.checks.verdict import without_figures
-from robocop_grading.judge import Outcome
+from robocop_grading.grades import Outcome
 
 BY_NAME = {wrong.name: wrong for wrong in WRONG}
 BASES = ("base_server", "base_bridge", "functions_bang_bang")

@@ -211,14 +211,14 @@ def test_interrupted_while_workers_start_it_leaves_nothing_and_prints_no_traceba
 def test_unreachable_scheduler_is_reported(group, start, key_of_cluster):
     grading = grade_class(start, group, "--scheduler", "tls://127.0.0.1:1")
     output, _ = grading.communicate(timeout=TIMEOUT)
-    assert grading.returncode == 1
+    assert grading.returncode == 2
     assert "no dask scheduler answers at tls://127.0.0.1:1" in output
 
 
 def test_scheduler_without_tls_is_refused(group, start):
     grading = grade_class(start, group, "--scheduler", "tcp://127.0.0.1:1")
     output, _ = grading.communicate(timeout=TIMEOUT)
-    assert grading.returncode == 1
+    assert grading.returncode == 2
     assert "--scheduler tcp://127.0.0.1:1: expected tls://HOST:PORT" in output
 
 

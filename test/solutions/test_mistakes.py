@@ -7,7 +7,7 @@ import pytest
 from graded import graded
 from mistakes import ALLOWED, MISTAKES, with_mistakes
 
-from robocop_grading.judge import Outcome
+from robocop_grading.grades import Outcome
 
 SEED = 1
 SAMPLE = {1: 4, 2: 8, 3: 4}  # how many combinations of so many mistakes

@@ -17,7 +17,7 @@ from wrong_solutions import ADVISED, WRONG
 
 from robocop_grading.cli import INTERRUPTED
 from robocop_grading.errors import GradingError
-from robocop_grading.judge import Outcome
+from robocop_grading.grades import Outcome
 from robocop_grading.plan_file import load
 from robocop_grading.sandbox import bubblewrap as sandbox
 from robocop_grading.submission import prepare_submission
@@ -129,9 +129,7 @@ def test_reference_solution_gets_full_marks_and_the_extra_point(tmp_path):
 
 
 @pytest.mark.parametrize("submission", ["scripts/robocop_goto_as.py", pytest.param("", marks=pytest.mark.slow)])
-def test_skeleton_or_its_server_is_graded_and_the_report_names_what_is_missing_with_a_bag_to_replay(
-    submission, tmp_path
-):
+def test_skeleton_or_its_server_is_graded_and_the_report_names_what_is_missing(submission, tmp_path):
     made = command("robocop_new.py", str(tmp_path / "lab"))
     assert made.returncode == 0, made.stderr
     done = command("robocop_grade.py", str(tmp_path / "lab" / submission), "--report", str(tmp_path / "report"))
@@ -139,7 +137,7 @@ def test_skeleton_or_its_server_is_graded_and_the_report_names_what_is_missing_w
     assert "No action server was created, or it was not started" in done.stdout, done.stdout + done.stderr
     html = (tmp_path / "report" / "report.html").read_text()
     assert "No action server was created" in html and "http" not in html and "src=" not in html
-    assert f"./robocop replay {tmp_path / 'report' / 'server-start.bag'}" in html
+    assert "replay" not in html, "nothing happens in it"
     assert (tmp_path / "report" / "report.json").exists()
     with rosbag.Bag(tmp_path / "report" / "server-start.bag") as bag:  # one that was closed
         assert "/scan" in bag.get_type_and_topic_info().topics
@@ -199,7 +197,7 @@ def test_what_can_not_work_is_refused_before_anything_starts(program, arguments,
     words = words.replace("/usr/bin/env", "/usr/bin") if of_class else words
     arguments = [path.get(argument, argument) for argument in arguments]
     done = command(program, *arguments)
-    assert done.returncode == 1
+    assert done.returncode == (4 if arguments[0] in ("/", "/usr/bin/env") and not of_class else 2)
     assert words in done.stderr and done.stderr.count("\n") == 1
 
 

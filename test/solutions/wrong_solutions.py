@@ -370,6 +370,49 @@ WRONG = (
         alone=True,
     ),
     _bridge(
+        "bridge_reports_by_the_clock",
+        "reports_status",
+        "reports ACTIVE while the goal is ABORTED",
+        ("        self.sent = True\n", "        self.sent = rospy.get_time()\n"),
+        (STATE, "'ACTIVE' if self.sent and rospy.get_time() < self.sent + 20.0 else 'SUCCEEDED'"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_timer_dies_at_an_aborted_goal",
+        "bridge_alive",
+        "KeyError: 4",
+        (STATE, "{0: 'PENDING', 1: 'ACTIVE', 3: 'SUCCEEDED', 9: 'LOST'}[self.client.get_state()]"),
+        ("rospy.Duration(2), self", "rospy.Duration(1), self"),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_rounds_clicks",
+        "forwards_goal",
+        "The position is rounded",
+        (POSITION, "goal.position.x, goal.position.y = round(pose.pose.position.x, 1), round(pose.pose.position.y, 1)"),
+    ),
+    _bridge(
+        "bridge_transforms_from_map",
+        "goal_frame",
+        "The click in base_footprint is transformed as if it were in map",
+        (
+            "        msg.header.stamp = rospy.Time(0)\n",
+            "        msg.header.stamp, msg.header.frame_id = rospy.Time(0), 'map'\n",
+        ),
+        alone=True,
+    ),
+    _bridge(
+        "bridge_with_an_action_server",
+        "waits_for_server",
+        "has an action server robocop_goto_as of its own",
+        (
+            "        self.client.wait_for_server()\n",
+            "        topic, kind = 'robocop_goto_as', GoToPositionAction\n"
+            "        self.server = getattr(actionlib, 'SimpleActionServer')(topic, kind, None, auto_start=False)\n"
+            "        self.server.start()\n        self.client.wait_for_server()\n",
+        ),
+    ),
+    _bridge(
         "bridge_gives_up",
         "forwards_goal",
         "without a timeout",
@@ -617,6 +660,6 @@ ADVISED: Tuple[Wrong, ...] = (
         "bridge_pending_is_active",
         "reports_status",
         "reports ACTIVE while the goal is PENDING",
-        (STATE, "'ACTIVE' if self.client.get_state() < 2 else 'SUCCEEDED'"),
+        (STATE, "GoalStatus.to_string(max(GoalStatus.ACTIVE, self.client.get_state()))"),
     ),
 )

@@ -11,8 +11,9 @@ from support import ROOT
 from robocop_grading import record as rec
 from robocop_grading.checks import Failed
 from robocop_grading.classroom.results import Results
+from robocop_grading.grades import CheckResult, Grade, Outcome
 from robocop_grading.handout import Limits
-from robocop_grading.judge import CheckResult, Grade, Outcome, judge
+from robocop_grading.judge import judge
 from robocop_grading.plan_file import load
 from robocop_grading.record import Record
 from robocop_grading.report.write import write

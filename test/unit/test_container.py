@@ -14,7 +14,7 @@ from command import ROOT, dry_run, make_program, robocop
 from robocop_grading import new
 from robocop_grading.checks import Failed
 from robocop_grading.errors import GradingError, GradingSetupError
-from robocop_grading.judge import CheckResult, Grade, Outcome
+from robocop_grading.grades import CheckResult, Grade, Outcome
 from robocop_grading.plan_file import load
 from robocop_grading.report.write import write
 from robocop_grading.sandbox import bubblewrap as sandbox

@@ -1,8 +1,6 @@
 """Changing the server's parameters while it runs: which sets are valid, and what the tools show as bounds."""
 
-import re
 from dataclasses import fields
-from pathlib import Path
 from typing import Any, Dict
 
 import pytest
@@ -12,7 +10,6 @@ from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.goto_params import GotoParams, differences, tuned
 
 P = GotoParams()
-INTERFACES = Path(__file__).resolve().parents[2] / "docs" / "interfaces.md"
 
 
 def test_a_change_replaces_its_values_and_keeps_all_others() -> None:
@@ -41,12 +38,3 @@ def test_the_tools_show_the_defaults_and_bounds_of_the_parameters() -> None:
     assert {name: spec.default for name, spec in specs.items()} == GotoConfig.defaults
     assert {name: spec.metadata["low"] for name, spec in specs.items()} == GotoConfig.min
     assert {name: spec.metadata["high"] for name, spec in specs.items()} == GotoConfig.max
-
-
-def test_the_documented_bounds_are_those_of_the_parameters() -> None:
-    text = INTERFACES.read_text(encoding="utf-8").partition("### Changing the server while it runs")[2]
-    rows = re.findall(r"^\| (`.+`) \| (\S+) \| (\S+) \|$", text.partition("```")[0], re.MULTILINE)
-    documented = {
-        name: (float(low), float(high)) for names, low, high in rows for name in re.findall(r"`(\w+)`", names)
-    }
-    assert documented == {name: (GotoConfig.min[name], round(GotoConfig.max[name], 2)) for name in GotoConfig.defaults}

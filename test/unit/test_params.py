@@ -2,6 +2,7 @@
 
 import os
 import re
+from pathlib import Path
 from typing import Any, Dict
 
 import pytest
@@ -10,31 +11,33 @@ from support import ROOT
 
 from aro_robocop_goto_as.bridge_params import BridgeParams
 from aro_robocop_goto_as.errors import ParameterError
-from aro_robocop_goto_as.goto_params import GotoParams
+from aro_robocop_goto_as.param_docs import NODES, Documented, documents
 from aro_robocop_goto_as.param_loading import declared, from_dict
 from aro_robocop_goto_as.sim_params import SimParams
 
-CONFIGS = [("sim.yaml", SimParams), ("goto_as.yaml", GotoParams), ("rviz_goto_ac.yaml", BridgeParams)]
+CHECKOUT = Path(ROOT)
 
 
-def documented(name: str) -> Dict[str, str]:
-    """Key -> default, as a config file shows them in its commented-out lines, each with an explanation."""
-    with open(os.path.join(ROOT, "config", name)) as stream:
-        lines = [re.match(r"#(\w+): (\S.*?) +# \S", line) for line in stream if re.match(r"#?\w", line)]
-    assert all(lines), "every key is commented out and explained"
-    return {line[1]: line[2] for line in lines if line}
+@pytest.mark.parametrize("path", documents(CHECKOUT), ids=lambda path: path.name)
+def test_what_documents_the_parameters_is_up_to_date(path: Path) -> None:
+    assert path.read_text() == documents(CHECKOUT)[path], (
+        "run ./robocop shell python3 -m aro_robocop_goto_as.param_docs"
+    )
 
 
-@pytest.mark.parametrize("name, cls", CONFIGS)
-def test_a_config_file_documents_every_parameter_with_its_default_and_sets_none(name: str, cls: Any) -> None:
-    with open(os.path.join(ROOT, "config", name)) as stream:
-        assert yaml.safe_load(stream) is None
-    defaults = {key: yaml.safe_load(text) for key, text in documented(name).items()}
-    specs = declared(cls)
-    assert defaults.keys() == specs.keys()
-    given = {key: value for key, value in defaults.items() if not str(value).startswith("<")}
-    assert from_dict(cls, given, name) == cls()
-    assert {key for key, (spec, _) in specs.items() if spec.default is None} == defaults.keys() - given.keys()
+@pytest.mark.parametrize("node", NODES, ids=lambda node: node.node)
+def test_every_parameter_has_a_meaning(node: Documented) -> None:
+    assert [name for name, (spec, _) in declared(node.params).items() if not spec.metadata.get("about")] == []
+
+
+@pytest.mark.parametrize("node", [node for node in NODES if node.yaml], ids=lambda node: node.node)
+def test_a_config_file_sets_nothing_and_shows_the_defaults_with_which_the_node_starts(node: Documented) -> None:
+    text = (CHECKOUT / node.yaml).read_text()
+    assert yaml.safe_load(text) is None
+    shown = yaml.safe_load("\n".join(re.findall(r"^#(\w+: .*)", text, re.MULTILINE)))
+    given = {key: value for key, value in shown.items() if not str(value).startswith("<")}
+    assert shown.keys() == declared(node.params).keys()
+    assert from_dict(node.params, given, node.yaml) == node.params()
 
 
 def test_rates_of_the_kinematic_configuration_are_consistent() -> None:

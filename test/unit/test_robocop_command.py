@@ -163,6 +163,33 @@ def test_doctor_names_what_is_missing_with_the_command_and_installs_nothing(chec
     assert not (checkout / ".robocop").exists() and not (checkout.parent / "cache").exists()
 
 
+def test_where_nothing_can_be_written_a_remedy_is_named(checkout):
+    (checkout / "install" / "deb-packages" / "run.txt").write_text("bash\n")
+    command = ["bwrap", "--dev-bind", "/", "/", "--ro-bind", str(checkout.parent), str(checkout.parent)]
+    settings = environment(HOME=str(checkout.parent / "home"))
+    settings.pop("XDG_CACHE_HOME", None)
+    done = subprocess.run(
+        [*command, str(checkout / "robocop"), "setup"], env=settings, capture_output=True, text=True, timeout=60.0
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.startswith(f"robocop: neither {checkout} nor {checkout.parent}/home/.cache/robocop/")
+    assert done.stderr.endswith(" can be written; set XDG_CACHE_HOME to a folder that can, or make room on the disk\n")
+
+
+def test_a_full_disk_is_named_instead_of_the_log_on_it(checkout):
+    root = checkout.rename(checkout.parent / "plain")
+    (root / "install" / "deb-packages" / "run.txt").write_text("bash\n")
+    command = ["bwrap", "--dev-bind", "/", "/", "--size", "1000000", "--tmpfs", f"{root}/.robocop"]
+    done = subprocess.run(
+        [*command, str(root / "robocop"), "setup"], env=environment(), capture_output=True, text=True, timeout=300.0
+    )
+    assert done.returncode == 1
+    assert (
+        f"robocop: the virtual environment could not be created: the disk of {root}/.robocop has only 0 MB left\n"
+        in done.stderr
+    )
+
+
 ANSWERS, FAILS = "exit 0", "echo no daemon >&2; exit 1"
 
 

@@ -9,19 +9,18 @@ import subprocess
 import sys
 from typing import Callable, Dict, List, NoReturn, Sequence
 
-from ..errors import MasterError
+from ..errors import RobocopError
 from ..suggestions import did_you_mean
-from . import completion, container_image, doctor, program, system_commands
+from . import container_image, doctor, program, system_commands
+from .help_texts import described, shown
 from .program import ROOT, refuse, say
 
 UNKNOWN_COMMAND = 2  # exit status
+NOT_GRADED = 4  # exit status of the graders
 SHELL_SETTINGS = """\
 [ ! -r ~/.bashrc ] || . ~/.bashrc
 PATH={venv}/bin:/usr/bin:/bin:$PATH  # ~/.bashrc may have put another Python first
-. {workspace}/setup.bash
-[ -n "${{BASH_COMPLETION_VERSINFO:-}}" ] || [ ! -r /usr/share/bash-completion/bash_completion ] \\
-  || . /usr/share/bash-completion/bash_completion
-. {completion}
+. "$ROBOCOP_WS/setup.bash"
 PS1="(robocop) $PS1"
 """
 
@@ -41,8 +40,10 @@ def expect_something(command: str, arguments: List[str]) -> None:
     """End with an error, before anything is installed, if no argument is a file, or a folder with something in it."""
     found = any(os.path.isfile(word) or glob.glob(f"{glob.escape(word)}/*") for word in arguments)
     if not (found or program.is_dry_run() or {"-h", "--help"} & set(arguments)):
-        given = (f"{word} (the folder is empty)" if os.path.isdir(word) else word for word in arguments)
-        refuse(f"{command}: expected a file or folder with something to grade, got: {' '.join(given) or 'nothing'}")
+        word = next((word for word in arguments if not word.startswith("-")), "nothing")
+        word += " (the folder is empty)" if os.path.isdir(word) else ""
+        say(f"{command}: expected a file or folder with something to grade, got: {word}")
+        sys.exit(NOT_GRADED)
 
 
 def shell(arguments: List[str]) -> None:
@@ -50,11 +51,9 @@ def shell(arguments: List[str]) -> None:
     program.need()
     if arguments:
         program.start(*arguments)
-    settings, words = program.state() / "bashrc", program.state() / "completion.bash"
+    settings = program.state() / "bashrc"
     if not program.is_dry_run():
-        words.write_text(completion.completion(), encoding="utf-8")
-        workspace, venv = os.environ["ROBOCOP_WS"], program.state() / "venv"
-        settings.write_text(SHELL_SETTINGS.format(venv=venv, workspace=workspace, completion=words), encoding="utf-8")
+        settings.write_text(SHELL_SETTINGS.format(venv=program.state() / "venv"), encoding="utf-8")
     program.start("bash", "--rcfile", str(settings))
 
 
@@ -96,12 +95,12 @@ def bench(arguments: List[str]) -> None:
 def show_help(commands: List[str]) -> None:
     """What the help text says about commands."""
     for command in commands:
-        print(completion.described().get(command) or refuse_unknown(command), end="")
+        print(shown(command) or refuse_unknown(command), end="")
 
 
 def refuse_unknown(command: str) -> NoReturn:
     """End with an error for a command that does not exist."""
-    hint = did_you_mean(command, completion.described())
+    hint = did_you_mean(command, described())
     say(f"unknown command '{command}' (./robocop help lists them){hint}")
     sys.exit(UNKNOWN_COMMAND)
 
@@ -125,7 +124,7 @@ def to_script(name: str, *parts: str) -> Callable[[List[str]], None]:
 COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "run": system_commands.run,
     "sim": system_commands.sim,
-    "goto": to_script("robocop_goto.py"),
+    "goto": system_commands.goto,
     "record": system_commands.record,
     "replay": system_commands.replay,
     "teleop": to_script("robocop_teleop.py"),
@@ -142,7 +141,6 @@ COMMANDS: Dict[str, Callable[[List[str]], None]] = {
     "doctor": lambda _: sys.exit(doctor.report(program.SCRIPT, str(ROOT), str(program.state()))),
     "version": lambda _: print(program.version()),
     "--version": lambda _: print(program.version()),
-    "completion": lambda _: print(completion.completion(), end=""),
     "clean": clean,
     "help": show_help,
 }
@@ -155,9 +153,9 @@ def main(words: Sequence[str]) -> None:
     if command not in COMMANDS:
         refuse_unknown(command)
     if command not in OWN_HELP and {"-h", "--help"} & set(arguments):
-        print(completion.described().get(command, ""), end="")
+        print(shown(command), end="")
         return
     try:
         COMMANDS[command](arguments)
-    except MasterError as error:
+    except RobocopError as error:
         refuse(str(error))

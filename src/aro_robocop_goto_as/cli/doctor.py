@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Dict, List, Tuple
 
 from ..errors import MasterError
-from ..probes import master, x_display
+from ..probes import master, settings, x_display
 
 PYTHON = "/usr/bin/python3"
 PACKAGES = ("rospy", "numpy", "pybullet")
 STAMPS = ("venv/made-as", "venv/requirements", "workspace/built-from")  # what a complete set-up leaves
-SETTINGS = ("ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "ROS_HOME")
+SETTINGS = ("ROS_MASTER_URI", "ROS_IP", "ROS_HOSTNAME", "ROS_HOME", "ROS_LOG_DIR")
 OPTIONAL_LISTS = ("rviz", "gui", "hosting", "grade", "class", "test")  # in install/deb-packages/
 # What neither ROS in /opt/ros, which is not installed by ./robocop, nor the system may lack.
 MODULES = (
@@ -69,13 +69,17 @@ def versions(python: str) -> Dict[str, str]:
 def master_row() -> Tuple[str, str]:
     """What answers at ROS_MASTER_URI, in words, and what to do about a problem; empty if there is no problem."""
     uri = master.master_uri()
+    problem = settings.problem()
+    if problem:
+        return "not asked, as these settings are of no use", problem
     try:
         if not master.master_answers(uri):
             return f"none at {uri}", ""
         state = master.running_simulator(uri) or master.no_simulator(uri) or "no simulator is running"
         commanded = master.publishers(uri, "cmd_vel").items()
         several = [f"{topic} is published by {' and '.join(nodes)}" for topic, nodes in commanded if len(nodes) > 1]
-        return "; ".join([f"answers at {uri}", state, *several]), ""
+        unheard = [f"no robot listens to {topic}" for topic in master.unheard(uri, "geometry_msgs/Twist")]
+        return "; ".join([f"answers at {uri}", state, *several, *unheard]), ""
     except MasterError as error:
         return "does not answer", str(error)
 
@@ -119,7 +123,7 @@ def examine(
         ("ROS master", master_state),
     ]
     problems = _problems(unsupported, missing, complete and installed["pybullet"][:1].isdigit())
-    return rows, problems + ([("the ROS master", master_problem)] if master_problem else [])
+    return rows, problems + ([("ROS", master_problem)] if master_problem else [])
 
 
 def _problems(unsupported: str, missing: Dict[str, str], complete: bool) -> List[Row]:

@@ -21,6 +21,8 @@ from . import doctor
 
 ROOT = Path(__file__).resolve().parents[3]
 SCRIPT = str(ROOT / "robocop")
+# The launch files whose arguments a command takes.
+RUN, SIM, REPLAY = (ROOT / "launch" / f"{name}.launch" for name in ("robocop_goto_as", "robocop_sim", "replay"))
 NOT_EXECUTABLE, NOT_FOUND = 126, 127  # exit statuses, as of a shell
 
 

@@ -6,11 +6,11 @@ import os
 import time
 from typing import List, NoReturn, Sequence, Tuple
 
+from ..launch_arguments import TRUE, LaunchArguments, with_absolute_path
 from ..names import ACTION, ACTION_TYPE, PACKAGE, absolute
-from ..probes import master, x_display
+from ..probes import master, settings, x_display
 from . import program
-from .launch_arguments import REPLAY, RUN, SIM, TRUE, LaunchArguments, with_absolute_path
-from .program import refuse, say
+from .program import REPLAY, RUN, SIM, refuse, say
 
 # What rosbag records: full topic names, also of robots with a namespace.
 RECORDED = (
@@ -30,11 +30,19 @@ def launch(given: LaunchArguments, *words: str) -> NoReturn:
     program.start_launcher(*quiet, PACKAGE, given.file.name, *words, *given.words)
 
 
+def require_settings(starts_simulator: bool = False) -> None:
+    """End with an error if no ROS system can run with the settings of the environment."""
+    problem = settings.problem(starts_simulator)
+    if problem:
+        refuse(problem)
+
+
 def refuse_second_simulator() -> None:
-    """End with an error if a simulator is running: nodes of the same name on one master shut each other down.
+    """End with an error if a simulator can't run: nodes of the same name on one master shut each other down.
 
     It also ends with an error if something other than a ROS master has the master's port.
     """
+    require_settings(starts_simulator=True)
     uri = master.master_uri()
     simulator = None if program.is_dry_run() else master.running_simulator(uri)
     if simulator:
@@ -45,9 +53,11 @@ def refuse_second_simulator() -> None:
 def run(arguments: List[str]) -> None:
     """Simulator, server, bridge and RViz, or the web page where there is no display."""
     given = LaunchArguments.parse(RUN, arguments)
-    program.need()  # also what finds out whether the display answers
-    if given.value("sim") not in ("false", "False", "0"):  # without one, it may be another's
+    if given.value("sim") in ("false", "False", "0"):  # it may be another's, or a real robot
+        require_settings()
+    else:
         refuse_second_simulator()
+    program.need()  # also what finds out whether the display answers
     parts = [part for part in ("gui", "web", "rviz") if given.is_true(part)]
     words = []
     if not given.value("rviz"):
@@ -78,6 +88,7 @@ def sim(arguments: List[str]) -> None:
         launch(given)
     if not after:
         refuse("--with: expected the folder of a catkin package")
+    refuse_second_simulator()
     shown = "rviz:=false" not in arguments and x_display.answers()
     os.environ["ROBOCOP_RVIZ"] = str(shown).lower()
     web, others = web_arguments([with_absolute_path(word) for word in [*before, *after[1:]]])
@@ -100,6 +111,14 @@ def web_arguments(words: Sequence[str]) -> Tuple[List[str], List[str]]:
     return (["robocop_web.py", *(word for word in own if not word.startswith("web:="))] if shown else []), others
 
 
+def goto(arguments: List[str]) -> None:
+    """Send one goal, to the running system or to one that is started for it."""
+    if not {"-h", "--help"} & set(arguments):
+        require_settings()
+    program.need()
+    program.start_script("robocop_goto.py", *arguments)
+
+
 def axclient(arguments: List[str]) -> None:
     """actionlib's graphical client of the running system's server."""
     if arguments and (len(arguments) != 2 or arguments[0] != "--robot"):
@@ -119,6 +138,7 @@ def record(arguments: List[str]) -> None:
     bag += "" if bag.endswith(".bag") else ".bag"
     if os.path.exists(bag):
         refuse(f"record: {bag} exists; give another name")
+    require_settings()
     program.need()
     if not program.is_dry_run():
         if not master.master_answers(master.master_uri()):

@@ -17,10 +17,16 @@ from ..world.model import World
 class EngineParams:
     """Which physics engine is used, and its parameters."""
 
-    drive: str = parameter("wheels", choices=("wheels", "kinematic"))  # the engine: Bullet or kinematic
-    solver_iterations: int = parameter(20, low=1, high=10000)
-    wheel_torque: float = positive(1.0)  # [Nm] maximum of each wheel motor
-    gui: bool = False
+    drive: str = parameter(
+        "wheels",
+        choices=("wheels", "kinematic"),
+        about="wheels: Bullet, with motors, contacts and slip; kinematic: an ideal drive, blocked by obstacles",
+    )
+    solver_iterations: int = parameter(
+        20, 1, 10000, "of Bullet; after 2 m straight 0.5 mm and 0.05 degrees from the result of 50, at half the cost"
+    )
+    wheel_torque: float = positive(1.0, "[Nm] maximum of each wheel motor")
+    gui: bool = parameter(False, about="open pybullet's window")
 
 
 class Engine(Protocol):

@@ -112,6 +112,17 @@ def publishers(uri: str, *names: str) -> Dict[str, List[str]]:
     return {topic: nodes for topic, nodes in found.items() if nodes}
 
 
+def unheard(uri: str, kind: str) -> List[str]:
+    """The topics of this message type that have a publisher, but no subscriber.
+
+    OSError and MasterError as ask_master().
+    """
+    published, subscribed, _ = ask_master(uri, "getSystemState") or ([], [], [])
+    kinds = dict(ask_master(uri, "getTopicTypes") or [])
+    heard = {topic for topic, _ in subscribed}
+    return [topic for topic, _ in published if kinds.get(topic) == kind and topic not in heard]
+
+
 def no_simulator(uri: str) -> str:
     """A message that no simulator runs; empty if one does, if a robot publishes odometry, or if no master answers.
 

@@ -26,7 +26,7 @@ def imports() -> Iterator[None]:
 def typed(command: str) -> str:
     """The words that started this program, for its usage: this command of ./robocop, else those for rosrun.
 
-    To be called once: it forgets ./robocop, as the programs that this one starts were not started by it.
+    Call it once: it removes the variable, so that child programs do not inherit it.
     """
     script = os.path.basename(sys.argv[0])
     return f"robocop {command}" if os.environ.pop(BY_ROBOCOP, "") else f"rosrun {PACKAGE} {script}"

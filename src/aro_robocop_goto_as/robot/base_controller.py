@@ -12,14 +12,18 @@ from .model import ModelFigures
 
 @dataclass(frozen=True)
 class LimitParams:
-    """Limits of every robot's base controller; None: each model's own figure."""
+    """Limits of every robot's base controller."""
 
-    velocity_limits: str = parameter("teleop", choices=("teleop", "firmware"))
-    max_linear_velocity: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [m/s]
-    max_angular_velocity: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [rad/s]
-    max_linear_acceleration: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [m/s^2]
-    max_angular_acceleration: Optional[float] = positive(None, otherwise=MODELS_OWN)  # [rad/s^2]
-    cmd_vel_timeout: Optional[float] = parameter(None, low=0.0, otherwise=MODELS_OWN)  # [s]; 0: never
+    velocity_limits: str = parameter(
+        "teleop", choices=("teleop", "firmware"), about="which of the model's own velocity limits hold"
+    )
+    max_linear_velocity: Optional[float] = positive(None, "[m/s]", otherwise=MODELS_OWN)
+    max_angular_velocity: Optional[float] = positive(None, "[rad/s]", otherwise=MODELS_OWN)
+    max_linear_acceleration: Optional[float] = positive(None, "[m/s^2]", otherwise=MODELS_OWN)
+    max_angular_acceleration: Optional[float] = positive(None, "[rad/s^2]", otherwise=MODELS_OWN)
+    cmd_vel_timeout: Optional[float] = parameter(
+        None, low=0.0, about="[s] without a command until the robot brakes; 0 = never", otherwise=MODELS_OWN
+    )
 
 
 class Limits(NamedTuple):

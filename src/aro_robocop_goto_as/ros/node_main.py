@@ -13,7 +13,7 @@ import rosgraph
 import rospy
 
 from ..errors import MasterError, RobocopError
-from ..names import SIMULATOR
+from ..names import SIMULATOR, robocop
 from ..param_loading import from_dict
 from ..probes import master
 from ..process.signals import ending_signals
@@ -46,7 +46,8 @@ def wait_for_master() -> None:
     """Return when there is a ROS master. rospy's own wait for one, in init_node, can't be ended by a signal."""
     if rosgraph.is_master_online():
         return
-    print(f"waiting for a ROS master at {rosgraph.get_master_uri()}: start ./robocop run or roscore", file=sys.stderr)
+    uri = rosgraph.get_master_uri()
+    print(f"waiting for a ROS master at {uri}: start {robocop()} run or roscore there", file=sys.stderr)
     try:
         while not rosgraph.is_master_online():
             time.sleep(MASTER_PERIOD)
@@ -91,8 +92,8 @@ def node(name: str, **options: Any) -> Iterator[None]:
     raise_descriptor_limit()
     try:
         rospy.init_node(name, disable_signals=True, **options)
-        # While this is not set, rospy asks the master for it at each line that it logs. If a node that ends because
-        # another one has its name logs a line, the master takes the question for a registration and ends the other one.
+        # While this is not set, rospy asks the master for it at each line that it logs. When a node that lost its name
+        # logs, the master takes this query for a new registration and ends the other node.
         if not rospy.has_param(ROSOUT_TOPICS):
             rospy.set_param(ROSOUT_TOPICS, False)  # as it is when not set
         yield

@@ -13,7 +13,7 @@ BUMPER = "bumper"
 class BumperParams(RateParams):
     """How often the bumper is read."""
 
-    bumper_rate: int = parameter(30, low=0)  # [Hz]; 0: never
+    bumper_rate: int = parameter(30, low=0, about="[Hz] of bumper; 0 = not published")
 
 
 class Bumper(Sensor):

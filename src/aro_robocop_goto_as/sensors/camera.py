@@ -24,13 +24,17 @@ PROFILES: Dict[str, Dict[str, Figures]] = {
 class CameraParams(RateParams):
     """The cameras: a profile, figures that replace its own, and how often they take images."""
 
-    camera_profile: str = parameter("small", choices=tuple(PROFILES))
-    camera_width: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
-    camera_height: Optional[int] = parameter(None, low=1, high=4096, otherwise=PROFILES_OWN)
-    camera_angle: Optional[float] = parameter(None, low=0.01, high=3.0, otherwise=PROFILES_OWN)  # [rad]
-    camera_range_min: float = positive(0.05)  # [m]
-    camera_range_max: float = positive(10.0)  # [m]
-    camera_rate: int = parameter(10, low=0)  # [Hz]; 0: never
+    camera_profile: str = parameter(
+        "small",
+        choices=tuple(PROFILES),
+        about="small: 160 x 120 pixels, 1.02974 rad as in turtlebot3_description; gazebo: as turtlebot3_gazebo's",
+    )
+    camera_width: Optional[int] = parameter(None, 1, 4096, "[pixels]", otherwise=PROFILES_OWN)
+    camera_height: Optional[int] = parameter(None, 1, 4096, "[pixels]", otherwise=PROFILES_OWN)
+    camera_angle: Optional[float] = parameter(None, 0.01, 3.0, "[rad] horizontal field of view", otherwise=PROFILES_OWN)
+    camera_range_min: float = positive(0.05, "[m] nearer objects are not rendered")
+    camera_range_max: float = positive(10.0, "[m] depth beyond is +inf (REP-118)")
+    camera_rate: int = parameter(10, low=0, about="[Hz] of models with a camera; 0 = none. An image takes a core 5 ms")
 
     def spec(self, model: str) -> CameraSpec:
         """The camera of a model, by its name."""

@@ -12,8 +12,8 @@ GROUND_TRUTH = "ground_truth_odom"
 class TruthParams(RateParams):
     """Whether the truth is published, and how often."""
 
-    ground_truth: bool = True
-    ground_truth_rate: int = parameter(30, low=1)  # [Hz]
+    ground_truth: bool = parameter(True, about="publish ground_truth_odom")
+    ground_truth_rate: int = parameter(30, low=1, about="[Hz] of ground_truth_odom")
 
 
 class GroundTruth(Sensor):

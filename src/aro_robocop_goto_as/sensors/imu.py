@@ -19,10 +19,10 @@ FIRST_STREAM = 1  # of the noise of the first robot's IMU, the next one's is 2, 
 class ImuParams(RateParams):
     """Standard deviations of the IMU's white noise, the accelerometer's bias, and how often it measures."""
 
-    gyro_noise: float = parameter(2e-4, low=0.0, high=100.0)  # [rad/s]
-    accelerometer_noise: float = parameter(1.7e-2, low=0.0, high=100.0)  # [m/s^2]
-    accelerometer_bias: float = parameter(0.0, low=-100.0, high=100.0)  # [m/s^2] added to each axis
-    imu_rate: int = parameter(200, low=1)  # [Hz]
+    gyro_noise: float = parameter(2e-4, 0.0, 100.0, "[rad/s] standard deviation; TurtleBot3 in Gazebo")
+    accelerometer_noise: float = parameter(1.7e-2, 0.0, 100.0, "[m/s^2] standard deviation; TurtleBot3 in Gazebo")
+    accelerometer_bias: float = parameter(0.0, -100.0, 100.0, "[m/s^2] added to each axis; TurtleBot3 in Gazebo: 0.1")
+    imu_rate: int = parameter(200, low=1, about="[Hz] of imu; need not divide physics_rate: the mean rate is exact")
 
 
 # Parts of a sample (10,): the orientation of imu_link in the world (x, y, z, w), angular velocity [rad/s] and specific

@@ -66,14 +66,24 @@ PROFILES: Dict[str, LidarProfile] = {
 class LidarParams(RateParams):
     """The lidar: a profile, and figures that replace its own."""
 
-    scan_profile: str = parameter("gazebo", choices=tuple(PROFILES))
-    scan_rate: Optional[int] = parameter(None, low=1, otherwise=PROFILES_OWN)
-    scan_samples: Optional[int] = parameter(None, low=2, high=100000, otherwise=PROFILES_OWN)
-    scan_angle_min: Optional[float] = parameter(None, low=-10.0, high=10.0, otherwise=PROFILES_OWN)
-    scan_angle_max: Optional[float] = parameter(None, low=-10.0, high=10.0, otherwise=PROFILES_OWN)
-    scan_range_min: Optional[float] = parameter(None, low=0.0, high=1e6, otherwise=PROFILES_OWN)
-    scan_range_max: Optional[float] = positive(None, otherwise=PROFILES_OWN)
-    scan_noise: Optional[float] = parameter(None, low=0.0, high=100.0, otherwise=PROFILES_OWN)
+    scan_profile: str = parameter(
+        "gazebo", choices=tuple(PROFILES), about="the lab's Gazebo sensor, or others with their quirks: docs/robots.md"
+    )
+    scan_rate: Optional[int] = parameter(None, low=1, about="[Hz] of scan", otherwise=PROFILES_OWN)
+    scan_samples: Optional[int] = parameter(
+        None, 2, 100000, "beams, both ends of the span included", otherwise=PROFILES_OWN
+    )
+    scan_angle_min: Optional[float] = parameter(None, -10.0, 10.0, "[rad] of the first beam", otherwise=PROFILES_OWN)
+    scan_angle_max: Optional[float] = parameter(None, -10.0, 10.0, "[rad] of the last beam", otherwise=PROFILES_OWN)
+    scan_range_min: Optional[float] = parameter(
+        None, 0.0, 1e6, "[m] nearer is -inf (REP-117), 0.0 for an LDS", otherwise=PROFILES_OWN
+    )
+    scan_range_max: Optional[float] = positive(
+        None, "[m] farther is +inf (REP-117), 0.0 for an LDS", otherwise=PROFILES_OWN
+    )
+    scan_noise: Optional[float] = parameter(
+        None, 0.0, 100.0, "[m] standard deviation; 0 = exact", otherwise=PROFILES_OWN
+    )
 
     def given(self) -> Dict[str, Any]:
         """The figures that replace the profile's."""

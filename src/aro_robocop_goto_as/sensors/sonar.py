@@ -29,9 +29,11 @@ FIRST_STREAM = 2**33  # of the noise of the first robot's sonar, the next one's 
 class SonarParams(RateParams):
     """Whether there is a sonar, its noise, and how often it measures."""
 
-    sonar: bool = False
-    sonar_rate: int = parameter(10, low=1)  # [Hz]
-    sonar_noise: float = parameter(0.0015, low=0.0, high=100.0)  # [m] sigma
+    sonar: bool = parameter(False, about="whether each robot has one: an ultrasonic range finder low on the front")
+    sonar_rate: int = parameter(10, low=1, about="[Hz] of sonar")
+    sonar_noise: float = parameter(
+        0.0015, 0.0, 100.0, "[m] standard deviation; two of it are the HC-SR04's accuracy of 3 mm"
+    )
 
     def rates(self) -> Dict[str, int]:
         """The rate [Hz]; none without a sonar."""

@@ -4,12 +4,14 @@
 
     scheduler    which thread runs, what the others wait for, and simulated time
     locks, clock, files, threads    Python's ways to wait, each of which tells the scheduler
-    stuck        threads that wait in a way that none of these sees; other processes
+    stuck        threads that wait in a way that none of these sees; child processes
     ros          rospy's time
-    ends, ros_graph, connections    rospy's topics and services, and the ROS master, without the network
+    memory_socket, ros_graph, connections    rospy's topics and services, and the ROS master, without the network
     noetic       names that the lab's Python 3.8 and NumPy still have
     wire         what the grader and the agent say to each other
-    channel      the grader's requests to go on until a simulated time, and the answers
+    request_loop the grader's requests to go on until a simulated time, and the answers
+
+docs/agent.md follows one thread's turn through these modules, and says what depends on each constant.
 
 It imports nothing but the standard library and ROS's own, so that it runs in any environment that the hand-in was built
 in. A hand-in that deceives it harms only itself: points come from what the grader sees on topics.
@@ -25,7 +27,7 @@ def install(descriptor: int, clock_ns: int) -> None:
     """
     import sys
 
-    from . import channel, clock, connections, files, locks, noetic, ros, threads
+    from . import clock, connections, files, locks, noetic, request_loop, ros, threads
     from .scheduler import start_new_thread
 
     sys.setswitchinterval(SWITCH)
@@ -34,7 +36,7 @@ def install(descriptor: int, clock_ns: int) -> None:
     files.install()
     threads.register_main()
     threads.install()
-    answers = channel.Channel(descriptor, clock_ns)
+    answers = request_loop.RequestLoop(descriptor, clock_ns)
     connections.install(answers.grader)
     ros.install(answers.clock)
     noetic.install()

@@ -8,7 +8,8 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 from .scheduler import scheduler
 
 _real = {
-    name: getattr(time, name) for name in ("time_ns", "monotonic_ns", "sleep", "localtime", "gmtime", "clock_gettime")
+    name: getattr(time, name)
+    for name in "time_ns monotonic_ns sleep localtime gmtime clock_gettime_ns strftime asctime".split()
 }
 
 LOOKS, LOOKS_TIME = 100, 0.001  # a thread's looks at clocks at one time, and the pause [s] after them: 10 us each
@@ -41,7 +42,7 @@ def sleep(seconds: float) -> None:
     if scheduler.active and seconds > 0:
         scheduler.pause(scheduler.deadline(seconds))
     elif scheduler.active and seconds == 0:
-        scheduler.give_way()
+        scheduler.yield_turn()
         looked()  # a loop that waits in this way
     else:
         _real["sleep"](seconds)  # also complains of a negative time
@@ -55,10 +56,26 @@ def gmtime(seconds: Optional[float] = None) -> time.struct_time:
     return _real["gmtime"](now() if seconds is None else seconds)
 
 
-def clock_gettime(clock: int) -> float:
+def clock_gettime_ns(clock: int) -> int:
     if clock == time.CLOCK_REALTIME:
-        return now()
-    return monotonic() if clock == time.CLOCK_MONOTONIC else float(_real["clock_gettime"](clock))
+        return time_ns()
+    return monotonic_ns() if clock == time.CLOCK_MONOTONIC else int(_real["clock_gettime_ns"](clock))
+
+
+def clock_gettime(clock: int) -> float:
+    return clock_gettime_ns(clock) / 1e9
+
+
+def asctime(when: Any = None) -> str:
+    return str(_real["asctime"](localtime() if when is None else when))
+
+
+def ctime(seconds: Optional[float] = None) -> str:
+    return asctime(localtime(seconds))
+
+
+def strftime(form: str, when: Any = None) -> str:
+    return str(_real["strftime"](form, localtime() if when is None else when))
 
 
 class _Kind(type):
@@ -93,7 +110,9 @@ def install() -> None:
 
     functions: Dict[str, Callable[..., Any]] = {
         **{"time": now, "time_ns": time_ns, "sleep": sleep, "localtime": localtime, "gmtime": gmtime},
-        **{"monotonic": monotonic, "monotonic_ns": monotonic_ns, "clock_gettime": clock_gettime},
+        **{"monotonic": monotonic, "monotonic_ns": monotonic_ns},
+        **{"clock_gettime": clock_gettime, "clock_gettime_ns": clock_gettime_ns},
+        **{"asctime": asctime, "ctime": ctime, "strftime": strftime},
         **{"perf_counter": monotonic, "perf_counter_ns": monotonic_ns},
     }
     for name, function in functions.items():

@@ -1,23 +1,23 @@
 """rospy's connections without the network: to the grader, on the wire, and to the node itself.
 
 rospy reaches the master and nodes by xmlrpc.client, and topics and services by TCPROSTransport. Both stay: requests
-to the master, to the grader and to the node itself are answered here, and an End takes the place of a socket. So
-latching, queue_size, _connection_header and the errors of wrong types are rospy's own, and all of this happens in no
-simulated time.
+to the master, to the grader and to the node itself are answered here, and a MemorySocket takes the place of a socket.
+So latching, queue_size, _connection_header and the errors of wrong types are rospy's own, and all of this happens in
+no simulated time.
 """
 
 import xmlrpc.client
 from typing import Any, Dict, Optional
 
-from .ends import End, accept
-from .ros_graph import Grader
+from .memory_socket import MemorySocket, accept
+from .ros_graph import SimulatorProxy
 from .scheduler import scheduler
 
 
-def _to_itself() -> End:
+def _to_itself() -> MemorySocket:
     """Connect the node to one of its own topics or services; return the node's end."""
-    mine: End = End(lambda data: theirs.feed(data))
-    theirs = End(mine.feed)
+    mine: MemorySocket = MemorySocket(lambda data: theirs.feed(data))
+    theirs = MemorySocket(mine.feed)
     mine.on_close, theirs.on_close = theirs.end, mine.end
     accept(theirs)
     return mine
@@ -33,13 +33,13 @@ def _answer(api: Any, body: Any) -> Any:
     return xmlrpc.client.loads(xmlrpc.client.dumps((result,), methodresponse=True))[0]
 
 
-def install(grader: Grader) -> None:
+def install(grader: SimulatorProxy) -> None:
     """Have rospy use these connections."""
     _install_requests(grader)
     _install_transport(grader)
 
 
-def _install_requests(grader: Grader) -> None:
+def _install_requests(grader: SimulatorProxy) -> None:
     """Have requests to the master, to the grader and to the node itself answered here."""
     from rospy.impl import masterslave
 
@@ -67,8 +67,8 @@ def _install_requests(grader: Grader) -> None:
     handler.__init__ = noted
 
 
-def _install_transport(grader: Grader) -> None:
-    """Have connections to the grader and to the node itself end in an End."""
+def _install_transport(grader: SimulatorProxy) -> None:
+    """Have connections to the grader and to the node itself use a MemorySocket."""
     import rospy
     from rosgraph.network import write_ros_handshake_header
     from rospy.impl import tcpros_base
@@ -89,7 +89,7 @@ def _install_transport(grader: Grader) -> None:
         self.read_header()
 
     def written(self: Any) -> None:
-        if isinstance(self.socket, End):  # rospy polls until it can be written to
+        if isinstance(self.socket, MemorySocket):  # rospy polls until it can be written to
             self.stat_bytes += write_ros_handshake_header(self.socket, self.protocol.get_header_fields())
         else:
             write_header(self)
@@ -99,7 +99,7 @@ def _install_transport(grader: Grader) -> None:
     rospy.topics.QueuedConnection = lambda connection, _size: connection
 
 
-def topics(grader: Grader) -> Dict[str, Any]:
+def topics(grader: SimulatorProxy) -> Dict[str, Any]:
     """What the node publishes and subscribes to: name, checksum and name of the type; nothing before init_node().
 
     Without rospy's locks, which a waiting thread may hold.

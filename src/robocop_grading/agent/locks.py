@@ -15,6 +15,8 @@ class Lock:
         self._waiters: Deque[Waiter] = deque()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        if timeout != -1 and (timeout < 0 or not blocking):
+            return bool(self._lock.acquire(blocking, timeout))  # raises what it has to
         if self._lock.acquire(False):
             return True
         if not blocking or timeout == 0:

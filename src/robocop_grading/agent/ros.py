@@ -19,7 +19,7 @@ MESSAGES, MESSAGES_TIME = 10, 0.01  # a thread's messages at one time, and how l
 CLOCK_MESSAGE = struct.Struct("<III")  # length, secs, nsecs
 
 
-class Clock:
+class RosClock:
     """What /clock shows, and who waits for it."""
 
     def __init__(self, now_ns: int, publish: Callable[[bytes], object]) -> None:
@@ -75,7 +75,7 @@ class Clock:
                 scheduler.end_wait_at(scheduler.now_ns, waiter)
 
 
-def install(shown: Clock) -> None:
+def install(shown: RosClock) -> None:
     """Have rospy's time be what is shown."""
     import rospy
     from rospy.impl import simtime
@@ -90,8 +90,8 @@ def install(shown: Clock) -> None:
     rospy.Publisher.publish = _then(rospy.Publisher.publish, lambda: scheduler.spend(1.0 / MESSAGES, MESSAGES_TIME))
 
 
-def _init_simtime(simtime: Any, shown: Clock) -> Callable[[], bool]:
-    """rospy's function, without a subscription to /clock: Clock.set() replaces its messages, with less work."""
+def _init_simtime(simtime: Any, shown: RosClock) -> Callable[[], bool]:
+    """rospy's function, without a subscription to /clock: RosClock.set() replaces its messages, with less work."""
     subscribe = simtime.init_simtime
 
     def init_simtime() -> bool:
@@ -104,7 +104,7 @@ def _init_simtime(simtime: Any, shown: Clock) -> Callable[[], bool]:
     return init_simtime
 
 
-def _sleeping(sleep: Any, shown: Clock) -> Any:
+def _sleeping(sleep: Any, shown: RosClock) -> Any:
     """rospy's function, by the clock that is shown."""
 
     @functools.wraps(sleep)
@@ -150,7 +150,7 @@ class _Subscription:
         import rospy
 
         started_ns, messages = scheduler.now_ns, queue.Queue()  # type: int, queue.Queue[Any]
-        # With rospy's own subscription it would not be connected yet, and get none of those that are on their way now.
+        # A subscription made only now would miss the messages that are already on their way.
         self._waiting.append((-1 if self.subscriber is None else scheduler.requests, messages))
         if self.subscriber is None:
             self.subscriber = rospy.Subscriber(self._topic, self._type, self._receive)

@@ -11,7 +11,7 @@ from typing import Any, Callable, Dict, List
 from urllib.parse import urlsplit
 
 from . import files
-from .ends import End, Header, accept, encoded
+from .memory_socket import Header, MemorySocket, accept, encoded
 
 CLOCK = "/clock"
 # What a node may ask its master: http://wiki.ros.org/ROS/Master_API, http://wiki.ros.org/ROS/Parameter%20Server%20API
@@ -31,8 +31,8 @@ class _AtOnce:
         _thread.start_new_thread(task, arguments)
 
 
-class Grader:
-    """The node /robocop_sim, as rospy sees it: its API, its topics and its services.
+class SimulatorProxy:
+    """Stands for the node /robocop_sim in the node's process: its API, its topics and its services, as rospy sees them.
 
     Only rospy.wait_for_service() connects to its port; it sends nothing.
     """
@@ -59,8 +59,8 @@ class Grader:
         self._offered: Dict[str, Header] = {}  # topics that it publishes and services, by name
         self._wanted: Dict[str, Header] = {}  # topics that it subscribes to
         self._latched: Dict[str, bytes] = {}
-        self._ends: Dict[str, List[End]] = {}  # of the node's subscriptions
-        self._heard: Dict[str, End] = {}  # of the node's publications
+        self._ends: Dict[str, List[MemorySocket]] = {}  # of the node's subscriptions
+        self._heard: Dict[str, MemorySocket] = {}  # of the node's publications
         for header in connections:
             self.offer(header)
 
@@ -88,7 +88,7 @@ class Grader:
         register = self.master.registerPublisher if publishes else self.master.registerSubscriber
         _, _, nodes = register(header["callerid"], header["topic"], header["type"], self._uri)
         if not publishes:
-            self._heard.pop(header["topic"], None)  # a node that it no longer listens to is connected anew
+            self._heard.pop(header["topic"], None)  # forget the old connection, so that a new one is made
             self.publisherUpdate("/master", header["topic"], nodes)
 
     def feed(self, topic: str, data: bytes) -> None:
@@ -105,7 +105,7 @@ class Grader:
     def publisherUpdate(self, _caller: str, topic: str, nodes: List[str]) -> Any:
         heard = self._heard.get(topic)
         if self.node is not None and self.node.uri in nodes and not (heard and heard.is_open):
-            self._heard[topic] = End(partial(self._publish, topic), sends_header=False)
+            self._heard[topic] = MemorySocket(partial(self._publish, topic), sends_header=False)
             self._heard[topic].feed(encoded(self._wanted[topic]))
             accept(self._heard[topic])
         return 1, "", 0
@@ -121,13 +121,13 @@ class Grader:
             return self.node
         return {self._master_host: self.master, f"localhost:{self.port}": self}.get(host)
 
-    def connect(self, protocol: Any) -> End:
+    def connect(self, protocol: Any) -> MemorySocket:
         """The node's end of a connection to one of the grader's topics or services."""
         name, kind = protocol.resolved_name, getattr(protocol, "service_class", protocol.recv_data_class)
         header = self._offered.get(name, {"error": f"/robocop_sim does not publish {name}"})
         if header.get("md5sum", "*") != kind._md5sum != "*":
             header = {"error": f"types do not match: [{kind._type}] vs. [{header['type']}] of {name}"}
-        end = End(lambda request: end.feed(self._call(name, request)), sends_header=False)
+        end = MemorySocket(lambda request: end.feed(self._call(name, request)), sends_header=False)
         end.feed(encoded(header))
         if "topic" in header:
             end.feed(self._latched.get(name, b""))

@@ -41,8 +41,8 @@ class Scheduler:
                           ^           |  |          |
                           |           |  +-> ended  | wake
                           +-----------|-------------+
-                                      +-> running, unawaited: it sleeps in an unknown way, or computes for long, and
-                                          the others have their turns meanwhile; until it waits or ends
+                                      +-> running in the background: it sleeps in an unknown way, or computes for
+                                          long, and other threads have their turns meanwhile; until it waits or ends
 
     So the threads run in the same order in every run. Methods that say "with the guard held" are called in this way.
     """
@@ -56,7 +56,7 @@ class Scheduler:
         self.active = True  # False in a forked child: the grader does not see it, and it lives on the wall clock
         self.now_ns = 0
         self.running: Set[int] = set()  # threads
-        self.unawaited: Set[int] = set()  # running threads that the scheduler does not wait for
+        self.background: Set[int] = set()  # running threads beside which others have their turns
         self.calling: Set[int] = set()  # running threads that wait for the grader's answer, in no simulated time
         self.queue: Deque[Waiter] = deque()  # whose turns are next
         self.starting = 0  # threads that got their first turn and have not begun to run
@@ -72,7 +72,7 @@ class Scheduler:
         """In a forked child, which has none of the other threads: everything is as without the agent."""
         self.active, self.guard, self.starting = False, _system.RLock(), 0
         self.running.clear()
-        self.unawaited.clear()
+        self.background.clear()
         self.calling.clear()
         self.queue.clear()
 
@@ -100,12 +100,12 @@ class Scheduler:
     def leave(self) -> None:
         """The calling thread no longer runs; with the guard held."""
         self.running.discard(_thread.get_ident())
-        self.unawaited.discard(_thread.get_ident())
+        self.background.discard(_thread.get_ident())
         self._pass_on()
 
     def _pass_on(self) -> None:
-        """Give the next thread its turn, unless the scheduler waits for a running thread; with the guard held."""
-        if self.starting or not self.running <= self.unawaited:
+        """Give the next thread its turn, unless a thread runs in the foreground; with the guard held."""
+        if self.starting or not self.running <= self.background:
             return
         if self.queue:
             self.turns += 1
@@ -143,8 +143,8 @@ class Scheduler:
             self.park(waiter, until_ns)
         self.wait(waiter)
 
-    def give_way(self) -> None:
-        """Let the threads run that have been woken up."""
+    def yield_turn(self) -> None:
+        """Let the threads run that have been woken up, then go on: what sched_yield does."""
         waiter = self.this_thread()
         with self.guard:
             if not self.queue:
@@ -184,8 +184,8 @@ class Scheduler:
             self.starting -= 1
             self.running.add(_thread.get_ident())
 
-    def no_thread(self, waiter: Waiter) -> None:
-        """Drop the first turn of a thread that the system did not start."""
+    def cancel_start(self, waiter: Waiter) -> None:
+        """Drop the first turn of a thread that the system could not start."""
         with self.guard:
             if waiter in self.queue:
                 self.queue.remove(waiter)
@@ -211,18 +211,18 @@ class Scheduler:
         with self.guard:
             return not self.running and not self.starting
 
-    def is_unawaited(self) -> bool:
-        """Return whether the scheduler waits for none of the threads that run."""
+    def only_background_runs(self) -> bool:
+        """Return whether every thread that runs is in the background."""
         with self.guard:
-            return not self.starting and self.running <= self.unawaited
+            return not self.starting and self.running <= self.background
 
-    def wait_for_none_of(self, threads: Set[int]) -> bool:
-        """Stop waiting for these threads if exactly they run; return whether another one got a turn."""
+    def move_to_background(self, threads: Set[int]) -> bool:
+        """Move these threads to the background if no others run; return whether another thread got a turn, or runs."""
         with self.guard:
             if self.starting or self.running != threads:
                 return True
             before = self.turns
-            self.unawaited.update(threads)
+            self.background.update(threads)
             self._pass_on()
             return self.turns != before
 

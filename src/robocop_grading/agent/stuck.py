@@ -39,7 +39,7 @@ def all_asleep() -> Optional[Set[int]]:
     found = {thread: _sleep_of(native_ids.get(thread, 0)) for thread in threads}
     same = {thread for thread, switches in found.items() if switches and _asleep.get(thread) == switches}
     _asleep = found
-    _pollers.intersection_update(scheduler.unawaited)  # the others have waited in a known way since
+    _pollers.intersection_update(scheduler.background)  # the other pollers have waited in a known way since
     if _window is None or not _window.look(found):
         _window = _Window(threads)
     _pollers.update(_window.pollers())
@@ -92,24 +92,24 @@ def _work_of(native_id: int) -> float:
         return math.nan
 
 
-class Others:
-    """The other processes that the hand-in has started, and what they do."""
+class ChildProcesses:
+    """The processes that the hand-in has started, and what they do."""
 
     def __init__(self) -> None:
-        self.exist = False  # whether it has ever started one
-        self.work = False  # whether one of them works, or waits for the processor, at the last look
-        self.processor_time = 0.0  # [s] of those that live
-        self.of_ros: Set[str] = set()  # programs of ROS, which find no master
+        self.were_started = False  # whether the hand-in has ever started a process
+        self.busy = False  # whether a process ran, or waited for the processor or a disk, at the last poll
+        self.processor_time = 0.0  # [s] of the processes that lived at the last poll
+        self.ros_programs: Set[str] = set()  # programs of ROS that were started; they find no master
         sys.addaudithook(self._notice)
 
     def _notice(self, event: str, arguments: object) -> None:
         if event in STARTS:
-            self.exist = True
-            self.of_ros.update(ROS_PROGRAM.findall(repr(arguments)))
+            self.were_started = True
+            self.ros_programs.update(ROS_PROGRAM.findall(repr(arguments)))
 
-    def look(self) -> None:
-        """Look at them, if there are any."""
-        if not self.exist:
+    def poll(self) -> None:
+        """Update `busy` and `processor_time`, if the hand-in has ever started a process."""
+        if not self.were_started:
             return
         waiting, states, ticks = _children(os.getpid()), "", 0
         while waiting:
@@ -118,7 +118,7 @@ class Others:
             for words in _words_of(f"/proc/{process}/task/*/stat"):
                 states += words[0]
                 ticks += int(words[11]) + int(words[12])
-        self.work = "R" in states or "D" in states
+        self.busy = "R" in states or "D" in states
         self.processor_time = ticks / TICK
 
 
@@ -136,8 +136,8 @@ def _words_of(pattern: str) -> Iterator[List[str]]:
 
 
 def processor_time() -> float:
-    """Processor time [s] of this process, without the calling thread, and of the others at the last look at them."""
-    return _process_time() - _thread_time() + others.processor_time
+    """Processor time [s] of this process without the calling thread, and of its children at their last poll."""
+    return _process_time() - _thread_time() + children.processor_time
 
 
-others = Others()
+children = ChildProcesses()

@@ -63,7 +63,7 @@ def _install_thread_class() -> None:
         try:
             start(thread)
         except RuntimeError:  # no more threads
-            scheduler.no_thread(thread.robocop_turn)
+            scheduler.cancel_start(thread.robocop_turn)
             raise
 
     @functools.wraps(bootstrap)
@@ -105,5 +105,5 @@ def _start_new_thread(function: Any, arguments: Any, options: Any = {}) -> int: 
     try:
         return start_unknown_thread(counted, ())
     except RuntimeError:  # no more threads
-        scheduler.no_thread(turn)
+        scheduler.cancel_start(turn)
         raise

@@ -7,12 +7,10 @@ from typing import List, Mapping, Optional, Sequence
 from ..handout import Limits
 from ..record import PREEMPTED, Click, Goal, Record
 from . import bridge_causes as causes
-from .bridge_reports import wrong_reports
+from .bridge_reports import is_silent, untrue, wrong_reports
 from .node_lifetime import no_exception, stays_alive
 from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
-
-FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 
 
 def _goals_after(record: Record, click: Click, until: float = math.inf) -> List[Goal]:
@@ -24,8 +22,8 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
     """A 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position."""
     if not record.clicks:
         return NotReached("there was no click")
-    click = record.clicks[-1]
-    goals = _goals_after(record, click)
+    click, *later = record.clicks
+    goals = _goals_after(record, click, later[0].time - 1e-3 if later else math.inf)
     wanted = f"x {click.x:g} y {click.y:g}"
     if not goals:
         return Failed(f"a goal at {wanted}", "no goal", click.time, causes.missing_connection(record), Kind.NO_GOAL)
@@ -108,8 +106,10 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
 def waits_for_server(record: Record, limits: Limits) -> Verdict:
     """A bridge that is started before the server waits for it, and then works."""
     if record.name == "no_server":
+        if record.marks.get("own_server"):
+            return Failed("an action client only", "an action server, too", 0.0, causes.OWN_SERVER)
         return _crash(record, limits) or NotReached("the bridge was not tried with a server")
-    if record.clicks and _goals_after(record, record.clicks[-1]):
+    if record.clicks and _goals_after(record, record.clicks[0]):
         return PASSED
     if not causes.has_client(record):
         return NotReached(causes.unconnected(record))
@@ -151,13 +151,8 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
             )
             return Failed(f"a goal for the click in {click.frame}", "no goal", click.time, cause, Kind.NO_GOAL)
         goal = goals[-1]
-        if not causes.distance(goal, click.odom_x, click.odom_y) <= FRAME_TOLERANCE:
-            cause = (
-                f"Coordinates in {click.frame} were passed on as if they were in odom: use tf2 to transform them from "
-                "header.frame_id to odom"
-                if causes.distance(goal, click.x, click.y) < causes.POSITION_TOLERANCE
-                else "The transform is wrong"
-            )
+        if not causes.distance(goal, click.odom_x, click.odom_y) <= causes.FRAME_TOLERANCE:
+            cause = causes.wrong_transform(record, click, goal)
             wanted = f"x {click.odom_x:.2f} y {click.odom_y:.2f} in odom"
             return Failed(wanted, f"x {goal.x:.2f} y {goal.y:.2f}", goal.time, cause, Kind.OTHER_POSITION)
     return PASSED
@@ -168,10 +163,9 @@ def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
     record, found = records.get("pending"), []
     if record is None or any(_crash(it, limits) for it in records.values()):
         return []
-    if "click" in records and reports_status(records["click"], limits) is PASSED:
-        verdict = reports_status(record, limits)
-        if isinstance(verdict, Failed) and verdict.kind in (Kind.NO_REPORT, Kind.UNTRUE_REPORT):
-            found.append(causes.REPORTS_STOP if verdict.kind is Kind.NO_REPORT else verdict.cause)
+    if "click" in records and reports_status(records["click"], limits) is PASSED and "watching" in record.marks:
+        wrong = untrue(record)
+        found += [causes.REPORTS_STOP] if is_silent(record) else [wrong.cause] if wrong else []
     if "replace" in records and cancels_older(records["replace"], limits) is PASSED:
         verdict = cancels_older(record, limits)
         if isinstance(verdict, Failed) and verdict.kind is Kind.NOT_CANCELLED:

@@ -2,7 +2,9 @@
 
 import math
 import re
-from typing import Sequence
+from typing import Dict, Sequence
+
+from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 
 from ..handout import ACTION, CLICKS
 from ..record import Cancel, Click, Goal, Record
@@ -11,6 +13,7 @@ from .output import NOT_IMPORTED, UNKNOWN_TYPE, logged
 from .topic_use import wrong_type
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
+FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 TOO_EARLY = re.compile("extrapolation.{1,40}into the future")  # in tf2's words
 ACTION_TOPICS = tuple(f"{ACTION}/{topic}" for topic in ("goal", "status", "result", "feedback"))
 MAX_ID = 80  # characters that are shown of a goal's id
@@ -32,6 +35,10 @@ OTHER_FRAME_IGNORED = (
     f"{NOT_FORWARDED}, although clicks in odom are: does the callback ignore other frames, or catch an exception of "
     "tf2 without logging it?"
 )
+OWN_SERVER = "The bridge has an action server robocop_goto_as of its own, so its client never waits for the real one"
+TARGET_FIRST = "odom is the target frame, the first argument of lookup_transform()"
+BOTH = "tf2's transform() does both"
+FROM_HEADER = "take its frame from header.frame_id"
 WAITS_FOR_NO_SERVER = (
     "A bridge that starts before the server has to connect to it later: call wait_for_server() without a timeout"
 )
@@ -60,6 +67,8 @@ def other_position(click: Click, goal: Goal) -> str:
         ("The sign of x is wrong", (-x, y)),
         ("The sign of y is wrong", (x, -y)),
         ("The signs of x and y are wrong", (-x, -y)),
+        ("The position is rounded", (round(x, 1), round(y, 1))),
+        ("The position is rounded to whole numbers", (round(x), round(y))),
     ):
         if distance(goal, *there) <= POSITION_TOLERANCE:
             return f"{cause}: set goal.position = msg.pose.position"
@@ -130,3 +139,36 @@ def not_cancelled(requests: Sequence[Cancel], older: Goal) -> str:
 def looks_up_too_early(record: Record) -> bool:
     """Return whether tf2 refused a transform because the newest transform was older than the requested time."""
     return logged(record, TOO_EARLY)
+
+
+def wrong_transform(record: Record, click: Click, goal: Goal) -> str:
+    """Which mistake explains where a click in another frame than odom has become a goal."""
+    if distance(goal, click.x, click.y) < POSITION_TOLERANCE:
+        return (
+            f"Coordinates in {click.frame} were passed on as if they were in odom: use tf2 to transform them from "
+            "header.frame_id to odom"
+        )
+    frames, frame = _frames(record, click.time), click.frame
+    there = frames.pop(frame, Pose2D())
+    for cause, odom_from_frame in (
+        (f"The transform is applied the wrong way round, as from odom to {frame}: {TARGET_FIRST}", inverse(there)),
+        (f"The click is only shifted from {frame} to odom, not turned: {BOTH}", there._replace(yaw=0.0)),
+        (f"The click is only turned from {frame} to odom, not shifted: {BOTH}", Pose2D(yaw=there.yaw)),
+        *(
+            (f"The click in {frame} is transformed as if it were in {other}: {FROM_HEADER}", pose)
+            for other, pose in frames.items()
+        ),
+    ):
+        point = compose(odom_from_frame, Pose2D(click.x, click.y))
+        if distance(goal, point.x, point.y) <= FRAME_TOLERANCE:
+            return cause
+    return "The transform is wrong"
+
+
+def _frames(record: Record, time: float) -> Dict[str, Pose2D]:
+    """By frame, odom_from_frame at a time [s]; map is the world."""
+    now = max((it for it in record.samples if it.time <= time + 1e-6), key=lambda it: it.time, default=None)
+    if now is None:
+        return {}
+    robot, in_world = Pose2D(now.x, now.y, now.yaw), Pose2D(now.world_x, now.world_y, now.world_yaw)
+    return {"base_footprint": robot, "map": compose(robot, inverse(in_world))}

@@ -1,26 +1,28 @@
-"""How a bridge reports its goal's state: how often, whether reports name a state, and whether the state is true."""
+"""What a bridge reports of its goals: how often, whether reports say something, and whether they follow the truth."""
 
+import math
 import re
-from typing import List, NamedTuple, Optional, Set, Tuple
+from collections import Counter
+from statistics import median
+from typing import FrozenSet, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from ..handout import Limits
-from ..record import ACTIVE, LOST, PENDING, STATUS_NAMES, SUCCEEDED, Line, Record
+from ..record import ACTIVE, LOST, PENDING, STATUS_NAMES, Line, Record
 from .verdict import Failed, Kind
 
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
-STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b", re.IGNORECASE)
-NUMBER = re.compile(r"\b(?:state|status)\b\D{0,5}\b([0-9])\b|^published on \S+: ([0-9])$", re.IGNORECASE)
+STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b")
+NUMBER = re.compile(r"\b(?:state|status|stav)\b\D{0,5}\b([0-9])\b|^published on \S+: ([0-9])$", re.IGNORECASE)
 PENDING_AS_TOLD = "_has_header"  # actionlib's GoalStatus.to_string(0): the message class has this constant, too: False
 # How a recorded line begins: as rospy writes it to a terminal, as recorded from /rosout, or a published report.
 BEGIN = re.compile(r"^(?:\x1b\[[\d;]*m)*(?:\[ *[A-Z]+\] ?(?:\[[\d., ]+\]:? ?)?|published on \S+: )?")
 UNCALLED = re.compile(r"<(?:bound method|function) [^>]*>*")
 # A label without a value, or with an empty one.
 NOTHING = re.compile(r"(?:[^:=,;]*[:=]\s*)?(?:None|\'\'|\"\")?\W*|[^:=,;]*\bNone\W*")
+WORD = re.compile(r"[^\W\d_]+|\d+")
 SETTLED = 0.3  # [s] after a change, in which a report may still be of the state before
-MOSTLY = 0.8
-SOMETIMES = 0.3  # share of reports that name the same states whatever the true one is
-DONE = 7  # the number of actionlib's CommState for a goal that has ended, in which ACTIVE is 2
-CLIENT_ACTIVE = 2
+SHORTEST = 1.0  # [s] a state that lasts less than this is not compared with reports
+RUNNING = (PENDING, ACTIVE)
 REPORT = "report what get_state() returns"
 SAYS_NOTHING = "The reports say nothing about the state"
 UNCALLED_REPORT = (
@@ -39,6 +41,14 @@ SEVERAL_STATES = (
     "state that get_state() returns, and no other one"
 )
 NUMBERS = "GoalStatus has PENDING = 0, ACTIVE = 1, PREEMPTED = 2, SUCCEEDED = 3, ABORTED = 4"
+EARLIER_GOAL = (
+    "The bridge reports {}, the state of an earlier goal, while the newest goal is {}: report what get_state() "
+    "returns. Is it the first entry of status_list, the oldest goal's, or does a timer of the earlier goal go on?"
+)
+REPORTS_END = (
+    "Nothing is reported while this goal is active, although reports came for earlier goals: does the timer end "
+    "with an earlier goal, for example by an exception for a state that it does not expect?"
+)
 
 
 def _content(line: Line) -> str:
@@ -48,6 +58,19 @@ def _content(line: Line) -> str:
 def _says_nothing(line: Line) -> bool:
     content = _content(line)
     return bool(UNCALLED.search(content) or NOTHING.fullmatch(content))
+
+
+def _between(record: Record, start: float, end: float) -> List[Line]:
+    return [line for line in record.lines if start < line.time < end]
+
+
+def _watched(record: Record) -> List[Line]:
+    return _between(record, record.marks["watching"] + 0.2, record.marks.get("watched", math.inf))
+
+
+def is_silent(record: Record) -> bool:
+    """Return whether nothing is said while the first goal is watched."""
+    return all(map(_says_nothing, _watched(record)))
 
 
 def _began(lines: List[Line]) -> List[float]:
@@ -61,11 +84,10 @@ def _began(lines: List[Line]) -> List[float]:
 
 def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
     """Name the failure: too few reports while a goal is active, or untrue reports."""
-    start = record.marks["watching"]
-    lines = [line for line in record.lines if start + 0.2 < line.time < record.marks.get("watched", float("inf"))]
+    start, lines = record.marks["watching"], _watched(record)
     count = len(_began([line for line in lines if not _says_nothing(line)]))
     if count >= limits.status_reports:
-        return _untrue(record)
+        return _ended(record, _began(lines)) or untrue(record)
     wanted = f"{limits.status_reports} reports within {limits.status_span:g} s"
     if len(_began(lines)) >= limits.status_reports:
         empty = next(line for line in lines if _says_nothing(line))
@@ -77,69 +99,119 @@ def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
 
 
 class Report(NamedTuple):
-    """A report of a goal's state: when [s], the states that it names, whether by numbers, and the true state."""
+    """A line that names states: when [s], their names, or numbers if it has no names, the states, all its words.
+
+    Each word comes with how often it is in the line, because a state's number may also be in a list of all numbers.
+    """
 
     time: float
+    named: Tuple[str, ...]
     states: Set[int]
-    by_number: bool
-    true: int
-    named: Tuple[str, ...] = ()  # states and numbers in the order in which it names them
+    words: FrozenSet[Tuple[str, int]]
 
     @property
-    def is_true(self) -> bool:
-        """Return whether the report names the true state.
-
-        When the goal has succeeded, a report is untrue only if it contradicts the success. Its numbers may then come
-        from another enumeration than actionlib's.
-        """
-        if self.true != SUCCEEDED:
-            return self.true in self.states
-        return self.states != {ACTIVE} if self.by_number else bool(self.states & {SUCCEEDED, PENDING, LOST})
+    def is_by_name(self) -> bool:
+        """Return whether it has names of states."""
+        return not self.named[0].isdigit()
 
 
-def _stated(record: Record) -> List[Report]:
-    """The reports that name a state, while the newest goal is PENDING, ACTIVE or SUCCEEDED, each once."""
-    changes = sorted(record.statuses, key=lambda change: change.time)
-    found: List[Report] = []
-    for line in record.lines:
-        before = [change for change in changes if change.time <= line.time + 1e-6]
-        told = line.text.replace(PENDING_AS_TOLD, STATUS_NAMES[PENDING])
-        words, figures = STATES.findall(told), [one or other for one, other in NUMBER.findall(line.text)]
-        names, numbers = {STATUS_NAMES.index(name.upper()) for name in words}, set(map(int, figures))
-        judged = before and before[-1].status in (PENDING, ACTIVE, SUCCEEDED) and line.time > before[-1].time + SETTLED
-        if (names or numbers) and judged and not (found and line.time - found[-1].time <= SAME_REPORT):
-            named = (*map(str.upper, words), *figures)
-            found.append(Report(line.time, names or numbers, not names, before[-1].status, named))
-    return found
+class Stretch(NamedTuple):
+    """From when until when [s] the newest goal is in a state, and what is reported then."""
+
+    start: float
+    end: float
+    true: int
+    reports: List[Report]
+
+    def untrue(self) -> List[Report]:
+        """The reports that name other states only; a goal that has ended may be called PENDING or LOST as well."""
+        right = {self.true} if self.true in RUNNING else {self.true, PENDING, LOST}
+        return [it for it in self.reports if not it.states & (right if it.is_by_name else {self.true})]
+
+    def often(self) -> Set[Tuple[str, int]]:
+        """The words in most of its reports."""
+        counts = Counter(word for report in self.reports for word in report.words)
+        return {word for word, count in counts.items() if 2 * count > len(self.reports)}
 
 
-def _is_client_state(reports: List[Report]) -> bool:
-    """Return whether the numbers are those of actionlib's CommState."""
-    ended = [report.states for report in reports if report.true == SUCCEEDED and report.by_number]
-    active = [report.states for report in reports if report.true == ACTIVE and report.by_number]
-    return bool(ended) and all(DONE in it for it in ended) and all(CLIENT_ACTIVE in it for it in active)
+def _report(line: Line) -> Report:
+    text = line.text.replace(PENDING_AS_TOLD, STATUS_NAMES[PENDING])
+    named = STATES.findall(text.upper()) or [one or other for one, other in NUMBER.findall(text)]
+    states = {int(it) if it.isdigit() else STATUS_NAMES.index(it) for it in named}
+    words = Counter(WORD.findall(_content(line).lower()))
+    return Report(line.time, tuple(named), states, frozenset(words.items()))
 
 
-def _untrue(record: Record) -> Optional[Failed]:
-    """Name the failure of a bridge that reports wrong states; only reports in actionlib's words are judged."""
-    reports = _stated(record)
-    told = {(report.named, report.true) for report in reports}
-    several = [it for it in reports if len(it.states) > 1 and sum(named == it.named for named, _ in told) > 1]
-    if len(several) > 1 and len(several) > SOMETIMES * len(reports):
-        first = several[0]
-        seen = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
-        return Failed(STATUS_NAMES[first.true], seen, first.time, SEVERAL_STATES, Kind.UNTRUE_REPORT)
-    wrong = [] if _is_client_state(reports) else [report for report in reports if not report.is_true]
-    true_states = dict.fromkeys(report.true for report in reports)
-    for true in true_states:
-        some = [report for report in reports if report.true == true]
-        untrue = [report for report in wrong if report.true == true]
-        if len(untrue) > 1 and len(untrue) > MOSTLY * len(some) or len(wrong) == len(reports) > 1:
-            first = untrue[0]
-            names = " ".join(STATUS_NAMES[state] for state in sorted(first.states))
-            shifts = {state - report.true for report in reports for state in report.states}
-            cause = f"The bridge reports {names} while the goal is {STATUS_NAMES[true]}: {REPORT}"
-            if len(true_states) > 1 and len(shifts) == 1:
-                cause = f"The names of the states are shifted: {names} is reported for {STATUS_NAMES[true]}; {NUMBERS}"
-            return Failed(STATUS_NAMES[true], names, first.time, cause, Kind.UNTRUE_REPORT)
+def _stretches(record: Record) -> List[Stretch]:
+    """The states of the newest goal in their order, those that last."""
+    numbers = {goal.id: number for number, goal in enumerate(record.goals)}
+    changes, newest = [], 0
+    for change in sorted(record.statuses, key=lambda change: change.time):
+        if numbers.get(change.id, -1) >= newest:
+            newest = numbers[change.id]
+            changes.append(change)
+    reports = [report for report in map(_report, record.lines) if report.named]
+    ends = [*(change.time for change in changes[1:]), math.inf]
+    return [
+        Stretch(it.time, end, it.status, [report for report in reports if it.time + SETTLED < report.time < end - 1e-6])
+        for it, end in zip(changes, ends)
+        if end - it.time >= SHORTEST
+    ]
+
+
+def _follow_the_truth(stretches: Sequence[Stretch]) -> bool:
+    """Return whether some word, in whatever language, tells a goal that is running from one that has ended."""
+    running = [it.often() for it in stretches if it.reports and it.true in RUNNING]
+    ended = [it.often() for it in stretches if it.reports and it.true not in RUNNING]
+    if not running or not ended:
+        return False
+    return bool(set.intersection(*running).difference(*ended) or set.intersection(*ended).difference(*running))
+
+
+def _state_names(states: Set[int]) -> str:
+    return " ".join(STATUS_NAMES[state] for state in sorted(states))
+
+
+def untrue(record: Record) -> Optional[Failed]:
+    """Name the failure if most reports of a state, of two or more, name other states: a report may be late by one.
+
+    Only reports with actionlib's names or numbers are judged. They are right if any words change with the truth, unless
+    it is the names that change otherwise.
+    """
+    stretches = _stretches(record)
+    named = [{one.named for one in it.reports if len(one.states) > 1} for it in stretches if it.reports]
+    legend = set.intersection(*named) if len(named) > 1 else set()
+    others = [it._replace(reports=[one for one in it.reports if one.named not in legend]) for it in stretches]
+    cause = "" if any(it.reports for it in others) or not legend else SEVERAL_STATES
+    stretches = stretches if cause else others
+    wrong = [it for it in stretches if len(it.reports) > 1 and (cause or 2 * len(it.untrue()) > len(it.reports))]
+    names = {report.named for it in stretches for report in it.reports if report.is_by_name}
+    if not wrong or len(names) < 2 and _follow_the_truth(stretches):
+        return None
+    first = wrong[0].reports[0] if cause else wrong[0].untrue()[0]
+    seen = ", ".join(dict.fromkeys(_state_names(report.states) for report in wrong[0].reports))
+    cause = cause or _untrue_cause(record, stretches, wrong[0])
+    return Failed(STATUS_NAMES[wrong[0].true], seen, first.time, cause, Kind.UNTRUE_REPORT)
+
+
+def _untrue_cause(record: Record, stretches: Sequence[Stretch], wrong: Stretch) -> str:
+    """Which mistake explains that other states than the true one are reported."""
+    first, true = wrong.untrue()[0], STATUS_NAMES[wrong.true]
+    shifts = {state - it.true for it in stretches for report in it.reports for state in report.states}
+    if len(shifts) == 1 and len({it.true for it in stretches if it.reports}) > 1:
+        return f"The names of the states are shifted: {_state_names(first.states)} is reported for {true}; {NUMBERS}"
+    newest = max((goal.time for goal in record.goals if goal.time <= wrong.start), default=0.0)
+    earlier = {it.id: it.status for it in record.statuses if it.time <= newest and it.status not in RUNNING}
+    if wrong.true in RUNNING and earlier and first.states <= {LOST, *earlier.values()}:
+        return EARLIER_GOAL.format(_state_names(first.states), true)
+    return f"The bridge reports {_state_names(first.states)} while the goal is {true}: {REPORT}"
+
+
+def _ended(record: Record, began: List[float]) -> Optional[Failed]:
+    """Name the failure of a bridge that reports nothing of a later goal; `began`: its reports of the first one [s]."""
+    period = median([later - time for time, later in zip(began, began[1:])] or [math.inf])
+    for it in _stretches(record):
+        watched = it.true == ACTIVE and 2.0 * period + SETTLED < it.end - it.start < math.inf
+        if watched and not _between(record, it.start + SETTLED, it.end):
+            return Failed("reports of each goal", "none", it.start, REPORTS_END, Kind.NO_REPORT)
     return None

@@ -19,7 +19,7 @@ from ..record import (
     status_name,
 )
 from ..texts import sentences
-from .output import NO_STATE, NO_STATE_LOGGED, TWO_STATES_LOGGED, logged_cause
+from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged_cause, no_state
 from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check, ended
 
@@ -230,7 +230,7 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
             )
             return Failed("one terminal state", line.text[:160], line.time, cause, Kind.TWO_STATES)
         if NO_STATE_LOGGED.search(line.text):
-            return Failed("a terminal state", "none was set", line.time, NO_STATE)
+            return Failed("a terminal state", "none was set", line.time, no_state(record, line.time))
     for goal in record.goals:
         changes = [change for change in record.statuses if change.id == goal.id and change.status in TERMINAL]
         if len({change.status for change in changes}) > 1:

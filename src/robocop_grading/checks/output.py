@@ -5,7 +5,8 @@ import os
 import re
 from typing import Iterator, Pattern, Sequence
 
-from ..record import Record
+from ..handout import GOAL_RADIUS, STOP_DISTANCE
+from ..record import Record, active_until, errors_at
 from ..texts import sentences
 
 # How a line at a level begins: as the recording writes /rosout, or as rospy writes it to a terminal.
@@ -45,7 +46,22 @@ def logged_cause(record: Record, end: float) -> str:
     """What the log says about why a goal ended wrongly at a time [s]; empty if it says nothing."""
     if logged(record, EXCEPTION_LOGGED, end):
         return f"An exception was raised: {last_error(record, end)}"
-    return NO_STATE if logged(record, NO_STATE_LOGGED, end) else ""
+    return no_state(record, end) if logged(record, NO_STATE_LOGGED, end) else ""
+
+
+def no_state(record: Record, end: float) -> str:
+    """A sentence about the goal that ended without a terminal state at about a time [s], and on which path."""
+    goal = min(record.goals, key=lambda it: abs(active_until(record, it) - end), default=None)
+    near = min(record.samples, key=lambda it: abs(it.time - end), default=None)
+    if goal is None or near is None:
+        return NO_STATE
+    paths = {
+        "when the goal was cancelled": any(goal.time < it.time <= end for it in record.cancels),
+        "when a newer goal came": any(goal.time < it.time <= end for it in record.goals),
+        "when the goal was reached": errors_at(near, goal)[0] < GOAL_RADIUS,
+        "when an obstacle was ahead": near.ahead < STOP_DISTANCE,
+    }
+    return ", ".join([NO_STATE, *[path for path, was_taken in paths.items() if was_taken][:1]])
 
 
 def last_error(record: Record, until: float = math.inf) -> str:

@@ -2,32 +2,28 @@
 
 import contextlib
 from pathlib import Path
-from typing import Dict, List, Tuple
+from typing import Collection, Dict, List, Tuple
 
 from aro_robocop_goto_as.errors import RobocopError
 
 from ..errors import GradingSetupError, SubmissionError
 from ..files import unpacking
 from ..files.archives import is_archive
-
-EXPECTED = "a folder, a zip or tar archive, or a Python file"
-EXPORTED = ("submission_metadata.yml",)  # written by Gradescope itself into what it exports
+from ..files.exports import EXPECTED, METADATA, visible
 
 
-def collect(folder: Path, reserved: Tuple[str, ...] = ()) -> Tuple[Dict[str, str], List[str]]:
+def collect(folder: Path, reserved: Collection[str] = ()) -> Tuple[Dict[str, str], List[str]]:
     """The digests of hand-ins by their names, sorted; a hand-in that can't be read has an empty digest.
 
     Every entry that is not hidden is a hand-in, except files that are `reserved` or made by the platform. The second
     value has the names of these files. GradingSetupError if there is no hand-in.
     """
-    if not folder.is_dir():
-        raise GradingSetupError(f"{folder}: expected a folder with {EXPECTED} for each hand-in")
     hand_ins: Dict[str, str] = {}
     others = []
-    for path in sorted(folder.iterdir()):
-        if path.name in (*reserved, *EXPORTED) and path.is_file():
+    for path in visible(folder):
+        if path.name in (*reserved, METADATA) and path.is_file():
             others.append(path.name)
-        elif not path.name.startswith(".") and path.name != "__MACOSX":
+        else:
             hand_ins[path.name] = ""
             with contextlib.suppress(RobocopError):  # its row says why
                 hand_ins[path.name] = unpacked(path).digest

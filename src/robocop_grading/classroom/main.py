@@ -20,17 +20,17 @@ from aro_robocop_goto_as.suggestions import did_you_mean
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
-from ..cli import INTERRUPTED
+from ..cli import INTERRUPTED, WRONG_USE
 from ..errors import GradingSetupError
-from ..judge import points_in_words
+from ..files.exports import class_folder, people
 from ..plan import MIDDLE, Plan
 from ..plan_file import MAX_SEED, load
 from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private, open_sandbox
 from ..submission import lab_environment
-from ..texts import printable_lines
+from ..texts import printable_lines, shortened
 from .hand_ins import collect
-from .results import WAITING, Result, Results, page, seed_of, summary, write_atomically
+from .results import WAITING, Results, StoredGrade, page, seed_of, summary, write_atomically
 from .summary import Summary, pace
 from .table import one_line, table
 from .worker import work
@@ -43,15 +43,16 @@ AGAIN = "also grade these hand-ins, or all, if no name follows, that have a resu
 CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
 
 
-class Class:
-    """The hand-ins of one folder and the results so far."""
+class Gradebook:
+    """The hand-ins of one folder and their grades so far."""
 
     def __init__(
         self, folder: Path, results: Results, plan: Plan, hand_ins: Mapping[str, str], again: Collection[str]
     ) -> None:
         self.folder, self.plan, self.results = folder, plan, results
+        self._people = people(folder)
         self.count = len(hand_ins)
-        self.done: Dict[str, Result] = {
+        self.done: Dict[str, StoredGrade] = {
             name: results.read(name)
             for name, digest in hand_ins.items()
             if name not in again and results.has(name, digest)
@@ -60,7 +61,7 @@ class Class:
         left = [name for name in hand_ins if name not in self.done]
         self.waiting = {name: hand_ins[name] for name in sorted(left, key=lambda name: name not in again)}
         self.problems: Dict[str, str] = {}
-        self._started, self._before = time.monotonic(), len(self.done)
+        self._started, self._before = time.monotonic(), {*self.done}
         self._next_write = 0.0  # [s, wall]
 
     @property
@@ -70,15 +71,17 @@ class Class:
 
     @property
     def pace(self) -> str:
-        """The rate of grading and the time left, in words."""
-        done = len(self.done) - self._before + len(self.problems)
-        return pace(done, len(self.waiting) - len(self.problems), time.monotonic() - self._started)
+        """The rate of grading and the time left, in words, by the hand-ins that have run; the others take no time."""
+        ran = sum(it.is_judged for name, it in self.done.items() if name not in self._before)
+        left = [name for name, digest in self.waiting.items() if digest and name not in self.problems]
+        return pace(ran, len(left), time.monotonic() - self._started)
 
     def summary_lines(self) -> List[str]:
         """The figures for the terminal, and the hand-ins that are not gradable, with the reasons."""
         reasons = {name: " | ".join(it.problems) for name, it in sorted(self.done.items()) if not it.is_judged}
         reasons.update(self.problems)
-        return self.figures.lines() + [one_line(f"not gradable: {it}: {why}")[:MAX_LINE] for it, why in reasons.items()]
+        told = [f"not gradable: {it}: {why}" for it, why in reasons.items()]
+        return self.figures.lines() + [shortened(one_line(it), MAX_LINE) for it in told]
 
     def add(self, name: str, problem: str) -> str:
         """Note that a hand-in has a result, or the reason why it has none; return a line about it for the terminal."""
@@ -89,9 +92,8 @@ class Class:
         self.waiting.pop(name, None)
         if time.monotonic() >= self._next_write:
             self.write(running=True)
-        problems = f" ({' | '.join(result.problems)})"[:MAX_LINE] if result.problems else ""
-        points = points_in_words(result.points, self.plan.points, result.extra, self.plan.extra)
-        words = f"{points if result.is_judged else 'not gradable'}, {result.seconds:.0f} s{problems}"
+        problems = shortened(f" ({' | '.join(result.problems)})", MAX_LINE) if result.problems else ""
+        words = f"{result.words if result.is_judged else 'not gradable'}, {result.seconds:.0f} s{problems}"
         left = f"; {self.pace}" if self.pace else ""
         return one_line(f"[{len(self.done)}/{self.count}] {name}: {words}{left}")
 
@@ -107,7 +109,7 @@ class Class:
     def write(self, running: bool) -> None:
         """Write the table and the overview of the results so far."""
         results, folder = [self.done[name] for name in sorted(self.done)], self.results.folder
-        write_atomically(folder / CSV, table(results, self.plan, self.problems))
+        write_atomically(folder / CSV, table(results, self.plan, self.problems, self._people))
         waiting = {name: self.problems.get(name, WAITING) for name in self.waiting}
         write_atomically(folder / HTML, page(self.folder.name, results, self.plan, waiting, running, self.pace))
         self._next_write = time.monotonic() + PERIOD
@@ -129,7 +131,7 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def grade_class(args: argparse.Namespace) -> Class:
+def grade_class(args: argparse.Namespace) -> Gradebook:
     """Grade what is not graded yet; RobocopError says why that can't be done."""
     folder = Path(args.folder).resolve()
     state, share = places()
@@ -142,13 +144,18 @@ def grade_class(args: argparse.Namespace) -> Class:
     plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE)
     digest = hashlib.sha256(plan.path.read_bytes()).hexdigest()
     out = make_report_folder(results_folder)
-    hand_ins = _hand_ins(folder, args.unsafe)
+    if not args.unsafe:
+        expect_private(folder)
+    given, folder = folder, class_folder(folder, (CSV, HTML))
+    if folder != given:
+        print(f"{one_line(str(folder))} is the class: nothing else is in {one_line(str(given))}", flush=True)
+    hand_ins = _hand_ins(folder)
     version = ElementTree.parse(share / "package.xml").findtext("version")
     with scratch_folder(), exclusive(out / ".run"):
         seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
         plan = load(plan.path, seed)
         results = Results(out, {"plan": digest, "seed": seed, "grader": version})
-        group = Class(folder, results, plan, hand_ins, chosen(args.again, hand_ins))
+        group = Gradebook(folder, results, plan, hand_ins, chosen(args.again, hand_ins))
         print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
         print(f"scenarios: seed {seed}", flush=True)
         if not args.scheduler:
@@ -159,10 +166,8 @@ def grade_class(args: argparse.Namespace) -> Class:
     return group
 
 
-def _hand_ins(folder: Path, unsafe: bool) -> Dict[str, str]:
+def _hand_ins(folder: Path) -> Dict[str, str]:
     """What the folder has, by name; what is no hand-in is printed."""
-    if not unsafe:
-        expect_private(folder)
     hand_ins, others = collect(folder, (CSV, HTML))
     for name in hand_ins.keys() & {CSV, HTML}:
         raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
@@ -172,14 +177,14 @@ def _hand_ins(folder: Path, unsafe: bool) -> Dict[str, str]:
 
 
 def main() -> None:
-    """Exit status 0: everybody is judged; 1: somebody was not gradable; 130: interrupted."""
+    """Exit status 0: everybody is judged; 1: somebody was not gradable; 2: as of robocop grade; 130: interrupted."""
     args = arguments()
     interrupt_on_signal()
     try:
         group = grade_class(args)
     except RobocopError as error:
         print(f"robocop grade-class: {printable_lines(str(error))}", file=sys.stderr)
-        sys.exit(1)
+        sys.exit(WRONG_USE)
     except KeyboardInterrupt:
         ignore_all()
         with contextlib.suppress(OSError):  # the terminal may be closed
@@ -207,7 +212,7 @@ def class_seed(given: Optional[int], results: Path) -> int:
     return next(seed for seed in seeds if seed is not None)
 
 
-def grade(group: Class, scheduler: str, workers: int, task: Callable[[Path], None]) -> None:
+def grade(group: Gradebook, scheduler: str, workers: int, task: Callable[[Path], None]) -> None:
     """Grade the remaining hand-ins; if interrupted, write what is done, say so, and raise KeyboardInterrupt."""
     group.write(running=bool(group.waiting))
     try:

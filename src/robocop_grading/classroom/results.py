@@ -14,24 +14,24 @@ from robocop_hosting import tree
 
 from ..checks import Failed
 from ..checks.verdict import without_figures
-from ..judge import CheckResult, Grade, Outcome, total
+from ..grades import CheckResult, Grade, Outcome, total
 from ..plan import PARTS, Plan
 from ..report.write import render
 from .summary import Summary
 
 STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
-NOT_HANDED_IN = "not handed in"
 REFRESH = 5.0  # [s] while grading is in progress ...
 REFRESH_EACH = 0.01  # [s] ... and this for each hand-in: a browser needs longer for a long page
 SHOWN = 200  # hand-ins until one asks for more
+MAX_SHOWN = 300  # characters of a hand-in's problems, and of a cause
 MAX_CAUSES = 3
 WAITING = "waiting"  # the reason why a hand-in has no result yet
-SYMBOLS = {"passed": "●", "failed": "✕", "not reached": "○", NOT_HANDED_IN: "–"}
+SYMBOLS = {"passed": "●", "failed": "✕", "not reached": "○", "not handed in": "–"}
 
 
 @dataclass(frozen=True)
-class Result(Grade):
-    """The result of one hand-in, as its report has it."""
+class StoredGrade(Grade):
+    """The grade of one hand-in, as its report has it."""
 
     seconds: float = 0.0  # [s, wall] that its grading took
 
@@ -42,13 +42,13 @@ class Result(Grade):
 
     def points_of(self, part: str) -> Optional[float]:
         """Points of the server or the bridge, without extra points; None if that part was not handed in."""
-        checks = [check for check in self.checks if check.part == part]
+        checks = [it for it in self.checks if it.part == part and it.outcome is not Outcome.NOT_HANDED_IN]
         return total(check.points for check in checks if not check.extra) if checks else None
 
     def outcomes(self, plan: Plan) -> List[str]:
-        """For each check of the plan: passed, failed, not reached, not handed in, or nothing if nothing was judged."""
+        """For each check of the plan: its outcome, or nothing if nothing was judged."""
         known = {check.name: check.outcome.value for check in self.checks}
-        return [known.get(check.name, NOT_HANDED_IN if self.is_judged else "") for check in plan.checks]
+        return [known.get(check.name, "") for check in plan.checks]
 
 
 def seed_of(folder: Path) -> Optional[int]:
@@ -91,12 +91,13 @@ class Results:
             tree.remove(final)
         os.rename(new, final)
 
-    def read(self, name: str) -> Result:
+    def read(self, name: str) -> StoredGrade:
         """The result that is stored for a hand-in."""
         folder = self.folder / name
         raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / STAMP).read_text())
         checks = [_check(it) for it in raw["checks"]]
-        return Result(name, tuple(checks), tuple(raw["problems"]), seconds=stamp["seconds"])
+        problems, notes = (tuple(raw.get(key, ())) for key in ("problems", "notes"))
+        return StoredGrade(name, tuple(checks), problems, notes, seconds=stamp["seconds"])
 
 
 def _check(raw: Mapping[str, Any]) -> CheckResult:
@@ -113,7 +114,7 @@ def write_atomically(path: Path, text: str) -> None:
     os.replace(new, path)
 
 
-def summary(results: Sequence[Result], plan: Plan, problems: int) -> Summary:
+def summary(results: Sequence[StoredGrade], plan: Plan, problems: int) -> Summary:
     """The class in a few figures; `problems` is the number of hand-ins that have a problem instead of a result."""
     judged = [result.points for result in results if result.is_judged]
     return Summary(judged, len(results) - len(judged) + problems, plan.points)
@@ -121,7 +122,7 @@ def summary(results: Sequence[Result], plan: Plan, problems: int) -> Summary:
 
 def page(
     title: str,
-    results: Sequence[Result],
+    results: Sequence[StoredGrade],
     plan: Plan,
     waiting: Mapping[str, str],
     running: bool,
@@ -140,13 +141,14 @@ def page(
         pace=pace,
         refresh=round(REFRESH + REFRESH_EACH * len(results)),
         shown=SHOWN,
+        most=MAX_SHOWN,
         symbols=SYMBOLS,
         cells={"": "<td>", **{it: f"<td class={it.split()[0]}>{symbol}" for it, symbol in SYMBOLS.items()}},
         checks=list(_checks(results, plan)),
     )
 
 
-def _checks(results: Sequence[Result], plan: Plan) -> Iterator[Dict[str, Any]]:
+def _checks(results: Sequence[StoredGrade], plan: Plan) -> Iterator[Dict[str, Any]]:
     """For each check the number of each outcome and the most frequent causes, without those of failures that follow."""
     counts = [collections.Counter(column) for column in zip(*(result.outcomes(plan) for result in results))]
     causes: Dict[str, Counter[str]] = collections.defaultdict(collections.Counter)
@@ -155,7 +157,7 @@ def _checks(results: Sequence[Result], plan: Plan) -> Iterator[Dict[str, Any]]:
             if it.failure is not None and not it.follows:
                 causes[it.name][it.failure.cause] += 1
     for check, outcomes in zip(plan.checks, counts or [collections.Counter()] * len(plan.checks)):
-        tried = len(results) - outcomes[NOT_HANDED_IN] - outcomes[""]
+        tried = len(results) - outcomes[Outcome.NOT_HANDED_IN.value] - outcomes[""]
         frequent = _most_frequent(causes[check.name])
         yield {"check": check, "outcomes": outcomes, "tried": tried, "causes": frequent}
 

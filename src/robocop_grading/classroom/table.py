@@ -5,32 +5,45 @@ import io
 from types import MappingProxyType
 from typing import Any, List, Mapping, Sequence
 
+from ..files.exports import Person
+from ..grades import Outcome
 from ..plan import PARTS, Plan
-from ..texts import printable
-from .results import NOT_HANDED_IN, Result
+from ..texts import printable, shortened
+from .results import StoredGrade
 
+IMPORTED = ("Identifier", "Full name", "Email", "SID", "Grade")  # Moodle's grading worksheet, Gradescope's people
 # A spreadsheet treats text that starts with one of these as a formula; the last four are full-width characters.
 FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 MAX_CELL = 2_000  # characters of a cell
 BYTE_ORDER_MARK = "\ufeff"  # without it spreadsheets read the file in another encoding than UTF-8
 
 
-def table(results: Sequence[Result], plan: Plan, problems: Mapping[str, str] = MappingProxyType({})) -> str:
+def table(
+    results: Sequence[StoredGrade],
+    plan: Plan,
+    problems: Mapping[str, str] = MappingProxyType({}),
+    people: Mapping[str, Person] = MappingProxyType({}),
+) -> str:
     """All results as CSV, one row each; `of` counts both parts, whether or not they were handed in.
 
-    `problems` maps the names that have no result to the reason. Where nothing was judged, there are no points.
+    `problems` maps the names that have no result to the reason. Where nothing was judged, there are no points. With
+    `people`, there are the columns that Moodle and Gradescope import.
     """
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     text.write(BYTE_ORDER_MARK)
-    rows.writerow(["name", "points", "of", "extra", *PARTS, "problem", *(check.name for check in plan.checks)])
-    for result in [*results, *(Result(name, (), (problem,)) for name, problem in sorted(problems.items()))]:
+    columns = IMPORTED if people else ()
+    checks = [check.name for check in plan.checks]
+    rows.writerow(["name", *columns, "points", "of", "extra", *PARTS, "problem", *checks, "notes"])
+    for result in [*results, *(StoredGrade(name, (), (problem,)) for name, problem in sorted(problems.items()))]:
         points: List[Any] = ["", plan.points, *[""] * (1 + len(PARTS))]
         if result.is_judged:
             of_parts = [result.points_of(part) for part in PARTS]
-            shown = [NOT_HANDED_IN if number is None else number for number in of_parts]
+            shown = [Outcome.NOT_HANDED_IN.value if number is None else number for number in of_parts]
             points = [result.points, plan.points, result.extra, *shown]
-        rows.writerow([_plain(result.name), *points, _plain(" | ".join(result.problems)), *result.outcomes(plan)])
+        who = [*map(_plain, people.get(result.name, Person())), points[0]] if people else []
+        said = [_plain(" | ".join(texts)) for texts in (result.problems, result.notes)]
+        rows.writerow([_plain(result.name), *who, *points, said[0], *result.outcomes(plan), said[1]])
     return text.getvalue()
 
 
@@ -41,5 +54,5 @@ def one_line(text: str) -> str:
 
 def _plain(text: str) -> str:
     """The text as one cell: no character in it controls a terminal, separates cells, or begins a formula."""
-    text = one_line(text)[:MAX_CELL].replace(";", ",")
+    text = shortened(one_line(text), MAX_CELL).replace(";", ",")
     return f"'{text}" if text.lstrip(" '\"").startswith(FORMULA) else text

@@ -13,12 +13,13 @@ from robocop_hosting.workspace import places
 from .. import faults
 from ..errors import UngradableError
 from ..grader import grade
-from ..judge import Grade
+from ..grades import Grade
 from ..plan import Plan
 from ..report.write import write
 from ..runner import Runner
 from ..sandbox.bubblewrap import open_sandbox
 from ..submission import prepare_submission
+from ..texts import shortened
 from .hand_ins import unpacked
 from .results import Results
 
@@ -39,7 +40,7 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
             handed_in.write(top / "hand_in" / path.name)
             submission = prepare_submission(str(top / "hand_in" / path.name), share, state, top / "workshop", sandbox)
             submission = replace(submission, name=shown(path), notes=[*submission.notes, *notes])
-            grade(Runner(plan, state, sandbox), submission, report)
+            grade(Runner(plan, state, sandbox), submission, report, results.folder / path.name)
         except UngradableError:
             raise
         except Exception as error:  # a hand-in that breaks the grader affects only its own row
@@ -48,8 +49,8 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
             tracebacks: Tuple[str, ...] = ()
             if not isinstance(error, RobocopError):
                 problem, tracebacks = f"could not be graded, see {faults.FILE}: {error!r}", (traceback.format_exc(),)
-            problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")[:MAX_PROBLEM]
-            write(Grade(shown(path), (), (problem, *notes), tracebacks=tracebacks), plan, {}, report)
+            problem = shortened(problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", ""), MAX_PROBLEM)
+            write(Grade(shown(path), (), (problem,), tuple(notes), tracebacks=tracebacks), plan, {}, report)
         results.keep(path.name, digest, report, time.monotonic() - started)
 
 

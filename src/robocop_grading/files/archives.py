@@ -13,19 +13,24 @@ import stat
 import tarfile
 import zipfile
 from pathlib import PurePosixPath
-from typing import IO, Any, Callable, Dict, NamedTuple
+from typing import IO, Any, Callable, Dict, List, NamedTuple
 
 from robocop_hosting import tree
 
 from ..errors import SubmissionError
 
-MAX_BYTES = 64 * 1024**2  # of a hand-in
+MB = 1024**2
+MAX_BYTES = 64 * MB  # of a hand-in, without its archives
 MAX_ENTRIES = 5_000  # files, folders and links of a hand-in
-MAX_TAR_BYTES = 256 * 1024**2  # of a tar archive with what is left out
-MAX_DIRECTORY = 4 * 1024**2  # bytes of a zip's list of its entries, which zipfile reads at once
+MAX_PACKED = 256 * MB  # bytes of a hand-in's archives, and of a tar archive with what is left out
+MAX_TARGET = 4096  # bytes of a link's target in a zip, as Linux takes it
+MAX_UNGRADED = MB  # bytes of a file in UNGRADED; a larger one is left out
+MAX_DIRECTORY = 4 * MB  # bytes of a zip's list of its entries, which zipfile reads at once
 TOO_MANY = f"expected at most {MAX_ENTRIES} files and folders"
-TOO_LARGE = f"larger than {MAX_BYTES // 1024**2} MB"
 LEFT_OUT = {*tree.GENERATED, ".git", ".robocop", ".ipynb_checkpoints", ".DS_Store"}
+UNGRADED = frozenset(  # videos, recordings and images
+    ".avi .bag .bmp .gif .heic .jpeg .jpg .m4v .mkv .mov .mp4 .mpeg .mpg .ogv .pdf .png .tif .tiff .webm .wmv".split()
+)
 APPLE_DOUBLE = "._"  # beginning of the files in which macOS keeps attributes of others
 SUFFIXES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
 # By a file's first bytes.
@@ -43,34 +48,43 @@ class Entry(NamedTuple):
     target: str = ""  # of a link
 
 
-class Contents:
-    """What a hand-in contains: its entries by path, with slashes; SubmissionError if there is too much."""
+class Entries:
+    """What a hand-in contains, by path, with slashes; SubmissionError if there is too much."""
 
     def __init__(self) -> None:
-        self.entries: Dict[str, Entry] = {}
-        self._bytes = 0
+        self.by_path: Dict[str, Entry] = {}
+        self._used = {False: 0, True: 0}  # bytes, also of archives
+        self.left_out: List[str] = []  # files that are not graded and would take much room, each with its size
 
     def add(self, path: str, entry: Entry) -> None:
         """Add an entry, or replace the one of that name."""
-        self.take(path)
-        self.entries[path] = entry
-        self._bytes += len(entry.content)
-        if len(self.entries) > MAX_ENTRIES:
+        self.by_path[path] = entry
+        if len(self.by_path) > MAX_ENTRIES:
             raise SubmissionError(TOO_MANY)
 
-    def take(self, path: str) -> Entry:
-        """Remove an entry, if it exists, and return it."""
-        entry = self.entries.pop(path, Entry(0))
-        self._bytes -= len(entry.content)
-        return entry
-
-    def read(self, source: "IO[bytes]") -> bytes:
-        """Read a file's content, if there is room for it."""
+    def add_file(self, path: str, mode: int, source: "IO[bytes]", size: int) -> None:
+        """Add a file, if there is room for it; `size`: its bytes, as it says itself."""
         with source:
-            content = source.read(MAX_BYTES - self._bytes + 1)
-        if len(content) > MAX_BYTES - self._bytes:
-            raise SubmissionError(TOO_LARGE)
-        return content
+            if is_ungraded(path, size):
+                self.left_out.append(f"{path} ({size // MB} MB)")
+                return
+            packed = is_archive(path)
+            limit = MAX_PACKED if packed else MAX_BYTES
+            room = limit - self._used[packed]
+            content = source.read(room + 1)
+        if len(content) > room:
+            sizes = [(len(entry.content), it) for it, entry in self.by_path.items()]
+            most, largest = max([*sizes, (max(size, len(content)), path)])
+            raise SubmissionError(
+                f"larger than {limit // MB} MB; the largest file in it is {largest} with {most / MB:.1f} MB"
+            )
+        self._used[packed] += len(content)
+        self.add(path, Entry(mode, content))
+
+
+def is_ungraded(name: str, size: int) -> bool:
+    """Return whether a file is so large, and of such a kind, that it is left out."""
+    return size > MAX_UNGRADED and PurePosixPath(name).suffix.lower() in UNGRADED
 
 
 def is_archive(name: str) -> bool:
@@ -83,17 +97,17 @@ def is_left_out(path: PurePosixPath) -> bool:
     return bool(LEFT_OUT.intersection(path.parts)) or path.name.startswith(APPLE_DOUBLE)
 
 
-def unpack_archive(file: "IO[bytes]", contents: Contents, prefix: str = "") -> None:
+def unpack_archive(file: "IO[bytes]", entries: Entries, prefix: str = "") -> None:
     """Add the files and links of a zip or tar archive, each below `prefix`; SubmissionError if that is not possible."""
     try:
-        (_unpack_zip if _is_zip(file) else _unpack_tar)(file, contents, prefix)
+        (_unpack_zip if _is_zip(file) else _unpack_tar)(file, entries, prefix)
     except SubmissionError:
         raise
     except Exception as error:  # zipfile and tarfile document no list of exceptions for malformed files
         raise SubmissionError(f"can't be unpacked: {error or type(error).__name__}") from error
-    for path in contents.entries:
+    for path in entries.by_path:
         for folder in map(str, PurePosixPath(path).parents):  # what is below a link would be written elsewhere
-            if folder in contents.entries and not stat.S_ISDIR(contents.entries[folder].mode):
+            if folder in entries.by_path and not stat.S_ISDIR(entries.by_path[folder].mode):
                 raise SubmissionError(f"{path}: {folder} is a file or a link, too")
 
 
@@ -103,7 +117,7 @@ def _is_zip(file: "IO[bytes]") -> bool:
     return file.read(2) == b"PK" and zipfile.is_zipfile(file)
 
 
-def _unpack_zip(file: "IO[bytes]", contents: Contents, prefix: str) -> None:
+def _unpack_zip(file: "IO[bytes]", entries: Entries, prefix: str) -> None:
     end = zipfile._EndRecData(file)  # type: ignore[attr-defined]  # private: nothing public reads only this
     if end and end[DIRECTORY_SIZE] > MAX_DIRECTORY:
         raise SubmissionError(TOO_MANY)
@@ -113,11 +127,11 @@ def _unpack_zip(file: "IO[bytes]", contents: Contents, prefix: str) -> None:
             name = _name_in_zip(info).replace("\\", "/")  # Windows' own zips have backslashes
             if name.endswith("/") or is_left_out(PurePosixPath(name)):
                 continue
-            path, content = _path(name, prefix), contents.read(archive.open(info))
+            path, source = _path(name, prefix), archive.open(info)
             if stat.S_ISLNK(mode):
-                contents.add(path, Entry(LINK, target=os.fsdecode(content)))
+                entries.add(path, Entry(LINK, target=os.fsdecode(source.read(MAX_TARGET))))
             else:
-                contents.add(path, Entry(_file_mode(mode), content))
+                entries.add_file(path, _file_mode(mode), source, info.file_size)
 
 
 def _name_in_zip(info: zipfile.ZipInfo) -> str:
@@ -133,15 +147,17 @@ def _name_in_zip(info: zipfile.ZipInfo) -> str:
         return info.filename
 
 
-def _unpack_tar(file: "IO[bytes]", contents: Contents, prefix: str) -> None:
+def _unpack_tar(file: "IO[bytes]", entries: Entries, prefix: str) -> None:
     file.seek(0)
     begin = file.read(max(map(len, COMPRESSIONS)))
     file.seek(0)
     opener = next((opener for magic, opener in COMPRESSIONS.items() if begin.startswith(magic)), None)
     # In one piece, as tarfile would read more than fits into memory for some headers.
-    plain = (opener(file) if opener else file).read(MAX_TAR_BYTES + 1)
-    if len(plain) > MAX_TAR_BYTES:
-        raise SubmissionError(f"larger than {MAX_TAR_BYTES // 1024**2} MB")
+    plain = (opener(file) if opener else file).read(MAX_PACKED + 1)
+    if plain.startswith(tree.POINTER):
+        raise SubmissionError(tree.IS_POINTER)
+    if len(plain) > MAX_PACKED:
+        raise SubmissionError(f"larger than {MAX_PACKED // MB} MB")
     try:
         archive = tarfile.open(fileobj=io.BytesIO(plain), mode="r:")
     except tarfile.ReadError:
@@ -151,12 +167,15 @@ def _unpack_tar(file: "IO[bytes]", contents: Contents, prefix: str) -> None:
             continue
         path = _path(member.name, prefix)
         if member.issym():
-            contents.add(path, Entry(LINK, target=member.linkname))
+            entries.add(path, Entry(LINK, target=member.linkname))
             continue
-        source = archive.extractfile(member)  # of a hard link: the file's that it is another name of
+        try:
+            source = archive.extractfile(member)  # of a hard link: the file's that it is another name of
+        except KeyError:
+            raise SubmissionError(f"{member.name}: a hard link to {member.linkname}, which is not in it") from None
         if source is None:
             raise SubmissionError(f"{member.name}: expected a file, folder or link")
-        contents.add(path, Entry(_file_mode(member.mode), contents.read(source)))
+        entries.add_file(path, _file_mode(member.mode), source, member.size)
 
 
 def _file_mode(mode: int) -> int:

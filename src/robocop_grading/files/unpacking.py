@@ -11,7 +11,7 @@ from typing import Dict, List, NamedTuple
 from robocop_hosting import tree
 
 from ..errors import SubmissionError
-from .archives import FOLDER, LEFT_OUT, Contents, Entry, is_archive, is_left_out, unpack_archive
+from .archives import FOLDER, LEFT_OUT, Entries, Entry, is_archive, is_left_out, unpack_archive
 
 MAX_NESTED = 3  # archives, one inside another, in what was handed in
 MAX_NAMED = 10  # files in a message
@@ -25,7 +25,7 @@ class Unpacked(NamedTuple):
     """What was handed in, a file or a folder, in memory."""
 
     entries: Dict[str, Entry]  # by path; the file or folder itself has an empty one
-    notes: List[str]  # about archives that were not unpacked
+    notes: List[str]  # about what is not used
 
     @property
     def digest(self) -> str:
@@ -53,20 +53,21 @@ class Unpacked(NamedTuple):
 
 def unpack(path: Path) -> Unpacked:
     """Unpack a file, archive or folder; SubmissionError if it can't be read, or has nothing to grade."""
-    contents = Contents()
+    entries = Entries()
     try:
         if is_archive(path.name) and path.is_file():
-            contents.add("", Entry(FOLDER))
+            entries.add("", Entry(FOLDER))
             with open(path, "rb") as file:
-                unpack_archive(file, contents)
+                unpack_archive(file, entries)
         else:
-            _add_from_disk(path, contents)
+            _add_from_disk(path, entries)
         if path.is_dir() and not os.listdir(path):
             raise SubmissionError("the folder is empty")
     except OSError as error:
         raise SubmissionError(f"can't be read: {error}") from error
-    _unpack_nested(contents)
-    return Unpacked(contents.entries, _notes(contents.entries))
+    _unpack_nested(entries)
+    notes = [f"{it} was left out: a video, a recording or an image is not graded" for it in entries.left_out]
+    return Unpacked(entries.by_path, [*_notes(entries.by_path), *notes])
 
 
 def is_packed(path: Path) -> bool:
@@ -77,27 +78,31 @@ def is_packed(path: Path) -> bool:
     return any(map(is_archive, names)) and not any(map(GRADED.fullmatch, names))
 
 
-def _add_from_disk(path: Path, contents: Contents) -> None:
+def _add_from_disk(path: Path, entries: Entries) -> None:
     """A file or folder and everything below it; links are not followed."""
     below = (folder / name for folder, folders, files in tree.walk(path, LEFT_OUT) for name in [*folders, *files])
     for inner in (path, *below):
-        name, mode = "" if inner == path else inner.relative_to(path).as_posix(), os.lstat(inner).st_mode
+        name, status = "" if inner == path else inner.relative_to(path).as_posix(), os.lstat(inner)
+        mode = status.st_mode
         if stat.S_IFMT(mode) not in TYPES:
             raise SubmissionError(f"{name}: expected a file, folder or link")
-        if not is_left_out(PurePosixPath(name)):
-            content = contents.read(open(inner, "rb")) if stat.S_ISREG(mode) else b""
-            contents.add(name, Entry(mode, content, os.readlink(inner) if stat.S_ISLNK(mode) else ""))
+        if is_left_out(PurePosixPath(name)):
+            continue
+        if stat.S_ISREG(mode):
+            entries.add_file(name, mode, open(inner, "rb"), status.st_size)
+        else:
+            entries.add(name, Entry(mode, target=os.readlink(inner) if stat.S_ISLNK(mode) else ""))
 
 
-def _unpack_nested(contents: Contents) -> None:
+def _unpack_nested(entries: Entries) -> None:
     """Replace archives by folders with their names, until there is something to grade outside of archives."""
     for _ in range(MAX_NESTED):
-        archives = [path for path in _files(contents.entries) if is_archive(path)]
-        if _has_something_to_grade(contents.entries):
+        archives = [path for path in _files(entries.by_path) if is_archive(path)]
+        if _has_something_to_grade(entries.by_path):
             return
         for path in archives:
             try:
-                unpack_archive(io.BytesIO(contents.take(path).content), contents, path)
+                unpack_archive(io.BytesIO(entries.by_path.pop(path).content), entries, path)
             except SubmissionError as error:
                 raise SubmissionError(f"{path}: {error}") from error
 

@@ -48,7 +48,7 @@ NOT_INLINE = re.compile(r'<metadata>.*?</metadata>|\sxmlns(:\w+)?="[^"]*"|\sclas
 Curve = Tuple[str, str, Sequence[Tuple[float, float]]]  # name, colour, points
 
 
-class Plot(NamedTuple):
+class Drawing(NamedTuple):
     """The functions that draw a record into axes below each other, and the size of the axes."""
 
     draw: Callable[[Sequence[Axes], Record, Sequence[float]], None]
@@ -237,10 +237,10 @@ def _states(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> No
     _finish(all_axes, at)
 
 
-PLOTS: Dict[str, Plot] = {
-    "track": Plot(_track, 3.6),
-    "errors": Plot(_errors, 3.4, 2),
-    "distances": Plot(_distances, 2.2),
-    "speeds": Plot(_speeds, 2.0),
-    "states": Plot(_states, 1.5, left=LEFT_OF_NAMES),
+PLOTS: Dict[str, Drawing] = {
+    "track": Drawing(_track, 3.6),
+    "errors": Drawing(_errors, 3.4, 2),
+    "distances": Drawing(_distances, 2.2),
+    "speeds": Drawing(_speeds, 2.0),
+    "states": Drawing(_states, 1.5, left=LEFT_OF_NAMES),
 }

@@ -6,22 +6,25 @@ import os
 import shlex
 import tempfile
 from pathlib import Path
-from typing import Any, Dict, Iterator, Sequence
+from typing import Any, Dict, Iterator, Optional, Sequence
 from urllib.parse import quote
 
 import jinja2
 
+from aro_robocop_goto_as.cli.program import ROOT
+
 from .. import faults
 from ..checks import CHECKS
 from ..errors import GradingSetupError
-from ..judge import CheckResult, Grade, Outcome, Records, total
+from ..grades import CheckResult, Grade, Mistake, Outcome, scored
+from ..judge import Records
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
-from ..texts import printable, printable_lines
+from ..texts import printable, printable_lines, shortened
 from .plots import svg
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
-MARKS = {"passed": "✅", "failed": "❌", "not reached": "➖"}  # of outcomes in the summary
+MARKS = {"passed": "✅", "failed": "❌", "not reached": "➖", "not handed in": "➖"}  # of outcomes in the summary
 LEAD = 1.0  # [s] before a failure, from where on a replay shows it
 MAX_LINES = 60  # of a node's output in the report
 
@@ -37,8 +40,8 @@ def make_report_folder(folder: Path) -> Path:
     return folder
 
 
-def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool = True) -> None:
-    """Write all files to an existing folder that already has the bags; `kept`: the folder will not be moved."""
+def write(grade: Grade, plan: Plan, records: Records, folder: Path, place: Optional[Path] = None) -> None:
+    """Write all files to an existing folder that already has the bags; `place`: where the folder will be moved."""
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1, default=lambda kind: kind.value))
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
@@ -47,19 +50,13 @@ def write(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool =
     # An HTML block without empty lines, so that GitHub does not read texts of the submission as Markdown.
     summary = render("summary.html", grade=grade, marks=MARKS)
     (folder / "summary.md").write_text(summary, encoding="utf-8", errors="replace")
-    scenarios = list(_scenarios(grade, plan, records, folder, kept))
+    replays = _Replays(folder, (place or folder).resolve())
     page = render(
         "report.html",
         grade=grade,
         seed=plan.seed,
-        kept=kept,
-        reached=[check for check in grade.failures_first if check.outcome is not Outcome.NOT_REACHED],
-        not_reached=[check for check in grade.checks if check.outcome is Outcome.NOT_REACHED],
-        not_reached_points=total(
-            it.points_available for it in grade.checks if it.outcome is Outcome.NOT_REACHED and not it.extra
-        ),
-        scenarios=sorted(scenarios, key=lambda scenario: not scenario["failed"]),
-        anchors={name: panel["anchor"] for it in scenarios for panel in it["panels"] for name in panel["names"]},
+        mistakes=[_mistake(it, records, replays) for it in grade.mistakes],
+        scenarios=list(_scenarios(grade, plan, records, replays)),
     )
     (folder / "report.html").write_text(page, encoding="utf-8", errors="replace")
 
@@ -75,6 +72,7 @@ def as_json(grade: Grade, plan: Plan) -> Dict[str, object]:
         "extra_of": grade.extra_available,
         "files": list(grade.files),
         "problems": list(grade.problems),
+        "notes": list(grade.notes),
         "checks": [_check_as_json(check) for check in grade.checks],
     }
 
@@ -125,72 +123,68 @@ def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
             test["score"], test["max_score"] = check.points, 0.0 if check.extra else check.points_available
             test["status"] = "passed" if passed else "failed"
         tests.append(test)
-    output = [*map(printable_lines, (*grade.files, *grade.problems)), f"scenarios: seed {plan.seed}"]
+    output = [*map(printable_lines, (*grade.files, *grade.problems, *grade.notes)), f"scenarios: seed {plan.seed}"]
     return {"score": grade.points + grade.extra, "output": "\n".join(output), "tests": tests}
 
 
 # -- report.html --
 
 
-def _scenarios(grade: Grade, plan: Plan, records: Records, folder: Path, kept: bool) -> Iterator[Dict[str, Any]]:
-    """The values of each scenario's section in report.html."""
+@dataclasses.dataclass(frozen=True)
+class _Replays:
+    """The commands that play the bags of a report; `place`: where the report's folder will be."""
+
+    folder: Path
+    place: Path
+
+    def of(self, part: str, record: Record, start: float = 0.0) -> str:
+        """The command for a scenario, from a time [s] on; nothing if there is no bag, or nothing happens in it."""
+        bag = f"{part}-{record.name}.bag"
+        if not (self.folder / bag).is_file() or not _has_something_to_see(record):
+            return ""
+        command = f"{shlex.quote(str(ROOT / 'robocop'))} replay {shlex.quote(str(self.place / bag))}"
+        return f"{command} --start {start:.1f}" if start else command
+
+
+def _mistake(mistake: Mistake, records: Records, replays: _Replays) -> Dict[str, Any]:
+    """The values of a mistake's section: its picture, with the moment marked, and the command that shows it."""
+    check, failure = mistake.check, mistake.check.failure
+    record = records.get(check.part, {}).get(check.scenario)
+    values = {"mistake": mistake, "check": check, "svg": "", "replay": "", "problem": ""}
+    if record is None or failure is None:
+        return values
+    begin = max(0.0, failure.time - record.samples[0].time - LEAD) if record.samples else 0.0
+    picture, replay = _plot(CHECKS[check.name].plot, record, [failure.time]), replays.of(check.part, record, begin)
+    problem = "" if record.problem.lower() in mistake.sentence.lower() else record.problem
+    return {**values, "svg": picture, "replay": replay, "problem": problem}
+
+
+def _scenarios(grade: Grade, plan: Plan, records: Records, replays: _Replays) -> Iterator[Dict[str, Any]]:
+    """The values of each scenario's section."""
     about = {scenario.name: scenario.about for scenario in plan.scenarios}
     order = [START, *about, *BRIDGE_SCENARIOS]
     for part, by_name in records.items():
         for record in sorted(by_name.values(), key=lambda record: order.index(record.name)):
-            checks = [
-                check
-                for check in grade.checks
-                if (check.part, check.scenario) == (part, record.name) and check.outcome is not Outcome.NOT_REACHED
-            ]
-            if part == "server" and not record.goals and not checks:
-                continue
-            shown = {CHECKS[check.name].plot for check in checks}
-            rest = [_plot(plot, record, []) for plot in SCENARIO_PLOTS[part] if plot not in shown]
-            bag = folder / f"{part}-{record.name}.bag"
+            checks = [it for it in grade.checks if (it.part, it.scenario) == (part, record.name)]
             yield {
                 "part": part,
-                "replay": shlex.quote(str(bag.resolve()) if kept else bag.name) if bag.is_file() else "",
                 "record": record,
                 "about": about.get(record.name, ""),
-                "panels": list(_panels(record, checks)),
-                "plots": list(filter(None, rest)),
+                "failed": [check.name for check in checks if check.outcome is Outcome.FAILED],
+                "replay": replays.of(part, record),
+                "plots": [svg for svg in (_plot(plot, record, []) for plot in SCENARIO_PLOTS[part]) if svg],
                 "lines": record.lines[:MAX_LINES],
-                "failed": any(check.outcome is Outcome.FAILED for check in checks),
             }
 
 
+def _has_something_to_see(record: Record) -> bool:
+    """Return whether something happens in a scenario; nothing does at the start, nor if the node never started."""
+    return bool(record.goals or record.clicks or record.commands)
+
+
 def _plot(name: str, record: Record, moments: Sequence[float]) -> str:
-    """A plot of a scenario with these moments marked [s]; nothing for a scenario without samples, such as the start."""
-    return svg(name, record, moments) if record.goals or record.clicks or record.commands else ""
-
-
-def _panels(record: Record, checks: Sequence[CheckResult]) -> Iterator[Dict[str, Any]]:
-    """The panels: each failed check beside its plot; passed checks with the same plot share a panel."""
-    shown = set()
-    for check in checks:
-        plot, passed = CHECKS[check.name].plot, check.outcome is Outcome.PASSED
-        if passed and plot in shown:
-            continue
-        first = plot not in shown
-        shown.add(plot)
-        others = [other for other in checks if other.outcome is Outcome.PASSED and CHECKS[other.name].plot == plot]
-        moments = [] if check.failure is None else [check.failure.time]
-        yield {
-            "check": check,
-            "svg": _plot(plot, record, moments),
-            "also_passed": [other.sentence for other in others] if passed else [],
-            "names": [check.name, *(other.name for other in others if first)],  # of the checks that it illustrates
-            "start": _start(check, record),
-            "anchor": f"{check.part}-{check.name}",
-        }
-
-
-def _start(check: CheckResult, record: Record) -> str:
-    """The time [s] in the scenario's bag a little before a check failed; nothing for a check that passed."""
-    if check.failure is None or not record.samples:
-        return ""
-    return f"{max(0.0, check.failure.time - record.samples[0].time - LEAD):.1f}"
+    """A plot of a scenario with these moments marked [s]; nothing for a scenario in which nothing happens."""
+    return svg(name, record, moments) if _has_something_to_see(record) else ""
 
 
 # -- pages made from templates/ --
@@ -210,10 +204,12 @@ _PAGES = jinja2.Environment(
     lstrip_blocks=True,
 )
 _PAGES.filters.update(
-    css=lambda outcome: outcome.split()[0],  # the class of an outcome
+    css=lambda outcome: outcome.partition(":")[0].split()[0],  # the class of an outcome
+    of=lambda checks: "{:g} / {:g}".format(*scored(checks)),
     one_line=printable,
     points=lambda points: "–" if points is None else f"{points:g}",
     printable=printable_lines,
+    shortened=shortened,
     quoted=lambda name: quote(os.fsencode(name)),  # a file's name, whatever bytes it consists of, as part of a URL
 )
 

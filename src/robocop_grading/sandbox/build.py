@@ -2,9 +2,10 @@
 
 import os
 import shutil
+import stat
 import subprocess
 from pathlib import Path
-from typing import IO, Iterable, Iterator, Mapping, Optional, Sequence
+from typing import IO, Dict, Iterable, Iterator, Mapping, Optional, Sequence
 
 from aro_robocop_goto_as.process import child
 from robocop_hosting import tree
@@ -14,9 +15,10 @@ from robocop_hosting.scripts import files_below
 from robocop_hosting.workspace import CHAINED, Environment, Run, copy_sources, make, run_plain
 
 from ..errors import GradingError
+from ..files.archives import is_ungraded
 from .bubblewrap import OWN_ENVIRONMENT, Sandbox, change_owner, user
 from .guard import Guard
-from .limits import BUILD_TIMEOUT, MAX_BUILD_CPU_TIME, MAX_SOURCE
+from .limits import BUILD_TIMEOUT, MAX_BUILD_CPU_TIME, MAX_SOURCE, MB
 
 PUBLIC = {*CHAINED, "LANG", "LC_ALL", "PATH", "TERM"}  # variables passed on; the others may be private
 PUBLIC_PREFIXES = ("ROS_", "ROSLISP_", "PYTHON")
@@ -76,13 +78,23 @@ def build(
         tree.remove(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
     unfinished.touch()
-    copied, names = 0, " and ".join(sources)
+    sizes: Dict[str, int] = {}  # bytes of each file
+    names = " and ".join(sources)
 
     def copy(path: str, target: str) -> None:
-        nonlocal copied
-        copied += os.stat(path).st_size
-        if copied > MAX_SOURCE:
-            raise GradingError(f"{names}: expected packages of less than {MAX_SOURCE // 1024**2} MB")
+        status = os.stat(path)
+        if not stat.S_ISREG(status.st_mode):
+            raise GradingError(f"{path}: expected an ordinary file")
+        size = status.st_size
+        if is_ungraded(path, size):
+            return
+        sizes[path] = size
+        if sum(sizes.values()) > MAX_SOURCE:
+            largest = max(sizes, key=lambda it: sizes[it])
+            raise GradingError(
+                f"{names}: expected packages of less than {MAX_SOURCE // MB} MB; the largest file in it is "
+                f"{largest} with {sizes[largest] / MB:.1f} MB"
+            )
         shutil.copy2(path, target)
 
     try:

@@ -90,7 +90,7 @@ def rules() -> Iterator[Rule]:
         yield ERRNO(0), name
     # A filter can't look at clone3's flags, which are in memory; without clone3 the C library uses clone.
     yield ALLOW, "clone", Arg(0, MASKED_EQ, NEW_NAMESPACE, 0)
-    # Memory that is shared without a file stays when it is unmapped or given back (MADV_DONTNEED) in part: nobody's.
+    # Anonymous shared memory outlives a partial unmap, and is then charged to nobody.
     for flags in (0, SHARED, ANONYMOUS):
         for name in ("mmap", "mmap2"):
             yield ALLOW, name, Arg(3, MASKED_EQ, SHARED | ANONYMOUS, flags)

@@ -26,7 +26,14 @@ START_TIMEOUT = 20.0  # [s] for the node's first connection
 CONNECT_TIMEOUT = 10.0  # [s] for its client to find the server
 REACTION_TIME = 3.0  # [s] for a click to become a goal
 STATUS_TICKS = 2  # from one status message to the next, which is actionlib's 5 Hz
-BEFORE, SECOND = (1.2, -0.4), (-0.6, 0.9)  # [m] clicks in odom
+BEFORE, SECOND = (1.24, -0.43), (-0.57, 0.86)  # [m] clicks in odom; a bridge that rounds them loses 0.04 m
+# The goals after the first one: the click, for how long [s] its goal is active, how it ends, and how long [s] the next
+# click takes to come. The last click comes while a server's status still begins with the goal before.
+LATER_GOALS = (
+    (SECOND, 5.0, rec.ABORTED, 11.0),
+    (SECOND, 2.0, rec.PREEMPTED, 0.4),
+    (BEFORE, 5.0, rec.PREEMPTED, 4.0),
+)
 # Types in which a bridge may report the goal's state: text, actionlib's states and their numbers. Not GoalStatusArray,
 # which any action server sends by itself, and not floats, which may be anything.
 STATUS_TYPES = {
@@ -108,12 +115,12 @@ class BridgeRun(Run):
                 self.add("statuses", rec.Status(self.stage.now, goal.id, rec.PREEMPTED))
                 self.server.cancel(goal.id, GoToPositionResult(False, "cancelled"))
 
-    def _finish_goals(self) -> None:
-        """Let all goals succeed."""
+    def _finish_goals(self, status: int = rec.SUCCEEDED) -> None:
+        """Let all goals end in a state."""
         assert self.server is not None
         for name in self.server.running():
-            self.server.succeed(name)
-            self.add("statuses", rec.Status(self.stage.now, name, rec.SUCCEEDED))
+            self.server.finish(name, status)
+            self.add("statuses", rec.Status(self.stage.now, name, status))
 
     # -- clicks --
 
@@ -162,10 +169,14 @@ class BridgeRun(Run):
         if self.topics.reaches(CLICKS):
             self._send_click("odom", 0.5, 0.1)
         self.settle(3.0)
+        self.marks["own_server"] = float(f"{ACTION}/result" in self.topics.published)
         self.finish("no_server")
 
     def _click(self) -> None:
-        """Send a click while there is a server; let time pass while the goal is active, and after it has succeeded."""
+        """Send clicks while there is a server; let time pass while each goal is active, and after its end.
+
+        The first goal is active for a report's period more than `status_span`, so that no report is lost by its phase.
+        """
         self.begin("click", 0)
         self._serve()
         self.wait_for(self._has_client, CONNECT_TIMEOUT)
@@ -175,10 +186,13 @@ class BridgeRun(Run):
         self.marks["clicked"] = self.stage.now
         self.marks["listeners"] = float(self.topics.reaches(CLICKS))
         self.marks["clients"] = float(self.topics.hears(f"{ACTION}/goal"))
-        self._send_click("odom", *BEFORE)
-        self._watch_reports()
-        self._finish_goals()
-        self._watch_reports()
+        limits = self.plan.limits
+        first = (BEFORE, limits.status_span + limits.status_period, rec.SUCCEEDED, 8.0)
+        for click, active, status, after in (first, *LATER_GOALS):
+            self._send_click("odom", *click)
+            self._watch_reports(active)
+            self._finish_goals(status)
+            self._watch_reports(after)
         self._stop_watching()
         self.finish("click", **self.names("/goal"))
 
@@ -187,10 +201,10 @@ class BridgeRun(Run):
         heard = all(self.topics.reaches(name) for name in (CLICKS, f"{ACTION}/status", f"{ACTION}/result"))
         return heard and self.topics.hears(f"{ACTION}/goal")
 
-    def _watch_reports(self) -> None:
+    def _watch_reports(self, seconds: float) -> None:
         """Let time pass, and record what is published on topics that appear meanwhile."""
         self.marks.setdefault("watching", self.stage.now)
-        for tick in range(round(self.plan.limits.status_span / TICK)):
+        for tick in range(round(seconds / TICK)):
             if tick % 10 == 0:
                 self._subscribe_to_reports()
             self.tick()
@@ -236,7 +250,7 @@ class BridgeRun(Run):
         self.begin("pending", 0)
         self.settle(1.0)
         self._send_click("odom", *BEFORE)
-        self._watch_reports()
+        self._watch_reports(self.plan.limits.status_period + 1.0)
         self._stop_watching()
         self._send_click("odom", *SECOND)
         self.settle(2.0)

@@ -92,9 +92,10 @@ class Goals:
         status = self._statuses[name].status
         self._end(name, CANCELLED[REQUESTED.get(status, status)], result)
 
-    def succeed(self, name: str) -> None:
-        """End a goal as SUCCEEDED."""
-        self._end(name, GoalStatus.SUCCEEDED, GoToPositionResult(True, "there"))
+    def finish(self, name: str, status: int) -> None:
+        """End a goal as SUCCEEDED, ABORTED, or PREEMPTED as if somebody else had cancelled it."""
+        succeeded = status == GoalStatus.SUCCEEDED
+        self._end(name, status, GoToPositionResult(succeeded, "there" if succeeded else "not there"))
 
     def _end(self, name: str, status: int, result: GoToPositionResult) -> None:
         self._statuses[name].status, self._statuses[name].text = status, ""

@@ -135,7 +135,7 @@ class Node:
             if not has_more and self._has_ended():
                 self._finish()
                 break
-            # Not more than its looks took: on a busy machine it may be the grader that has no time to read the answer.
+            # Count no more than our own polls took: on a busy machine the delay may be the grader's.
             silent = min(looks * POLL, self._guard.still - still)
             if self._guard.idle - idle > MAX_IDLE or self._still + silent > MAX_STILL:
                 did = "stopped answering" if self._channel.is_open else "closed its connection to"

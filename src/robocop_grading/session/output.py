@@ -21,7 +21,7 @@ class Output:
         self.is_open = True
         os.set_blocking(stream.fileno(), False)
         with contextlib.suppress(OSError):  # the user has very many pipes
-            fcntl.fcntl(stream, F_SETPIPE_SZ, PIPE)  # to its agent, a node that waits for the grader looks done
+            fcntl.fcntl(stream, F_SETPIPE_SZ, PIPE)  # a node blocked on a full pipe looks idle to its agent
 
     def fileno(self) -> int:
         return self._stream.fileno()

@@ -16,7 +16,7 @@ SEVERAL = changed(goals=(GOAL, replace(GOAL, id="h")))  # the second goal gets n
     "others, again, counts, told",
     [
         pytest.param(
-            {"left": RIGHT}, RIGHT, False, "no mistake had come before it", id="the first: it went wrong by itself"
+            {"left": RIGHT}, RIGHT, False, "no mistake had come before", id="the first: it went wrong by itself"
         ),
         pytest.param({"left": STUCK}, RIGHT, True, "may have left something behind", id="the second, after a mistake"),
         pytest.param(
@@ -33,3 +33,11 @@ def test_attempt_that_counts(others, again, counts, told):
     assert chosen["right"] == replace(again if counts else STUCK, name="right")
     assert counted == (["right"] if counts else [])
     assert told in "".join(said) and bool(said) == bool(told)
+
+
+def test_repeated_scenarios_are_told_in_one_sentence():
+    names = ("right", "behind")
+    records = {name: replace(STUCK, name=name) for name in ("left", *names)}
+    records.update({f"{name}{AGAIN}": replace(RIGHT, name=f"{name}{AGAIN}") for name in names})
+    (told,) = counting(PLAN, records)[2]
+    assert told.endswith("(an earlier mistake may have left something behind): right, behind")

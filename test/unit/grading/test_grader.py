@@ -29,7 +29,7 @@ def graded(outcomes, folder, monkeypatch):
 def test_killed_part_is_run_again_and_the_grade_says_so(tmp_path, monkeypatch):
     grade = graded([KILLED, GRADED], tmp_path, monkeypatch)
     assert "action_server" in grade.failed(), "by the second run"
-    assert grade.problems == (
+    assert grade.notes == (
         "server: the server was killed in scenario far by a SIGKILL that did not come from the grader; this part was "
         "run again",
     )
@@ -81,5 +81,5 @@ def test_module_that_is_not_installed_is_named_as_mistyped_or_as_one_that_the_la
 ):
     lines = ["Traceback (most recent call last):", f"ModuleNotFoundError: No module named '{module}'"]
     record = Record("start", "server", up=False, lines=tuple(Line(0.0, line) for line in lines))
-    (problem,) = graded([Recorded({"start": record})], tmp_path, monkeypatch).problems
+    (problem,) = graded([Recorded({"start": record})], tmp_path, monkeypatch).notes
     assert problem == f"server: Python's module {module} is not installed here{words}"

@@ -8,7 +8,8 @@ import pytest
 from grading_records import GOAL, PLAN, RIGHT, changed, commanded, fed_back, graded
 
 from robocop_grading import record as rec
-from robocop_grading.judge import CheckResult, Outcome, judge
+from robocop_grading.grades import CheckResult, Outcome
+from robocop_grading.judge import judge
 from robocop_grading.plan import CheckPlan
 from robocop_grading.record import Record
 from robocop_grading.report.write import as_classroom, as_gradescope
@@ -124,14 +125,14 @@ def test_mistake_that_blocks_most_points_comes_first() -> None:
         "bridge": {"click": Record("click", "bridge", clicks=(CLICK,), marks={"clients": 0.0})},
     }
     first, second = judge("anna", SMALL, records, {}).mistakes
-    assert (first.check.name, first.points, first.followers, first.blocked) == ("action_server", 5.0, 0, 3)
+    assert (first.check.name, first.points, len(first.followers)) == ("action_server", 5.0, 3)
     assert (second.check.name, second.points) == ("forwards_goal", 4.0)
 
 
 def test_mistakes_are_sorted_by_the_points_that_they_and_what_follows_from_them_cost() -> None:
     wrong = replace(MISLED, samples=tuple(replace(sample, v=0.2) for sample in MISLED.samples))
     found = [
-        (mistake.check.name, mistake.points, mistake.followers)
+        (mistake.check.name, mistake.points, len(mistake.followers))
         for mistake in judge("anna", SMALL, {"server": {"left": wrong}}, {}).mistakes
     ]
     assert found == [("feedback_angle", 3.5, 1), ("stands_at_end", 0.5, 0)]
@@ -184,13 +185,13 @@ def test_extra_check_that_failed_has_no_score_on_gradescope_and_is_no_failure_on
 def test_topic_that_nobody_publishes_is_named_if_something_failed() -> None:
     own = ("/robovop_goto_as/goal", "/robovop_goto_as/cancel")
     waits = replace(START, servers=("/robovop_goto_as",), unpublished=("/ground_truth_odom", "/scn", *own))
-    problems = graded(waits, problem="time-out").problems
-    assert not any("robovop" in problem for problem in problems)
-    assert any("subscribes to /scn, which nobody publishes" in problem for problem in problems)
-    assert any("ground_truth_odom, which nobody publishes; the position comes from /odom" in it for it in problems)
+    notes = graded(waits, problem="time-out").notes
+    assert not any("robovop" in note for note in notes)
+    assert any("subscribes to /scn, which nobody publishes" in note for note in notes)
+    assert any("ground_truth_odom, which nobody publishes; the position comes from /odom" in it for it in notes)
 
 
 def test_programs_of_ros_that_a_node_starts_are_named_whatever_failed() -> None:
     starts = replace(START, programs=("rostopic", "rosservice"))
-    problems = graded(starts, replace(starts, name="left")).problems
-    assert [it.startswith("server: it starts rosservice, rostopic: in a grading,") for it in problems] == [True]
+    notes = graded(starts, replace(starts, name="left")).notes
+    assert [it.startswith("server: it starts rosservice, rostopic: in a grading,") for it in notes] == [True]

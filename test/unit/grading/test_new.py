@@ -40,8 +40,8 @@ def autograder(tmp_path):
 
 
 # What ./robocop does where the sandbox can't run, and with nothing to grade.
-REFUSED = 'case "$*" in *--unsafe) write;; *) echo "robocop grade: bubblewrap can\'t run here: no" >&2; exit 1;; esac'
-NOTHING = 'echo "robocop grade: nothing to grade" >&2; exit 1'
+REFUSED = 'case "$*" in *--unsafe) write;; *) echo "robocop grade: bubblewrap can\'t run here: no" >&2; exit 2;; esac'
+NOTHING = 'echo "robocop grade: nothing to grade" >&2; exit 4'
 NO_POINTS = {"score": 0, "output": "robocop grade: nothing to grade\n"}
 
 

@@ -10,7 +10,7 @@ import pytest
 from grading_records import RIGHT, graded
 
 from robocop_grading import record as rec
-from robocop_grading.judge import Grade, Outcome
+from robocop_grading.grades import Grade, Outcome
 from robocop_grading.record import Record
 
 SCENARIOS = ("left", "far")

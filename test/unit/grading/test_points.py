@@ -1,5 +1,6 @@
 """Points are counted in one way: what is scored of what is available, and extra points apart from it, everywhere."""
 
+import json
 import re
 from dataclasses import replace
 
@@ -7,8 +8,10 @@ import pytest
 from grading_records import PLAN
 
 from robocop_grading.checks import Failed
-from robocop_grading.cli import Progress, as_text
-from robocop_grading.judge import CheckResult, Grade, Outcome
+from robocop_grading.classroom.results import StoredGrade
+from robocop_grading.classroom.table import table
+from robocop_grading.cli import as_text, progress
+from robocop_grading.grades import CheckResult, Grade, Outcome, completed
 from robocop_grading.plan import BRIDGE_SCENARIOS, Plan
 from robocop_grading.report.write import as_classroom, as_gradescope, as_json, write
 
@@ -65,7 +68,7 @@ def test_cost_of_a_mistake_names_extra_points_apart(checks, cost, tmp_path) -> N
     grade = Grade("anna", checks)
     assert [mistake.cost for mistake in grade.mistakes] == [cost]
     write(grade, PLAN, {}, tmp_path)
-    assert re.search(f"costs {cost}[;<\n]", (tmp_path / "report.html").read_text())
+    assert re.search(f"costs {cost}<", (tmp_path / "report.html").read_text())
 
 
 def test_mistake_that_costs_only_an_extra_point_is_fixed_last() -> None:
@@ -77,20 +80,38 @@ def test_every_list_marks_extra_checks_and_adds_up_the_others_only() -> None:
     text = as_text(
         Grade("anna", (failed(FORWARDS), blocked(replace(FORWARDS, name="b"), FORWARDS), blocked(FRAME, FORWARDS))), {}
     )
-    assert "not reached     0 / 2     b, goal_frame (extra): no goal" in text
-    assert "passed          2 / 2     b, goal_frame (extra)" in as_text(
+    assert "\n                  0 / 2     not reached because of it: b, goal_frame (extra)\n" in text
+    assert "passed            2 / 2     b, goal_frame (extra)" in as_text(
         Grade("anna", (failed(FORWARDS), replace(FORWARDS, name="b"), FRAME)), {}
     )
-    assert "FAILED          0 / 1     Frames are transformed. (extra)" in as_text(Grade("anna", (failed(FRAME),)), {})
+    assert "FAILED            0 / 1     Frames are transformed. (extra)" in as_text(Grade("anna", (failed(FRAME),)), {})
     for listed in (as_classroom(Grade("anna", (FRAME,))), as_gradescope(Grade("anna", (FRAME,)), PLAN)):
         assert "Frames are transformed. (extra)" in str(listed)
 
 
+def test_part_that_is_not_handed_in_counts_the_same_in_every_report(tmp_path) -> None:
+    server = [it for it in PLAN.checks if it.part == "server"]
+    checks = [CheckResult(it.name, "server", "", Outcome.PASSED, it.points, it.points, it.extra) for it in server]
+    grade = completed(Grade("anna", tuple(checks)), PLAN)
+    words = "5 of 8 points, 0 of 1 extra"
+    assert not grade.all_right and grade.words == words
+    write(grade, PLAN, {}, tmp_path)
+    texts = {name: (tmp_path / name).read_text() for name in ("report.html", "summary.md")}
+    for text in (as_text(grade, {}), *texts.values()):
+        assert words in text and "not handed in" in text and "the bridge" in text
+    assert json.loads((tmp_path / "report.json").read_text())["of"] == 8.0
+    assert json.loads((tmp_path / "classroom.json").read_text())["max_score"] == 8.0
+    assert (
+        sum(test.get("max_score", 0.0) for test in json.loads((tmp_path / "results.json").read_text())["tests"]) == 8.0
+    )
+    row = table([StoredGrade("anna", grade.checks)], PLAN).splitlines()[1]
+    assert row.startswith("anna,5.0,8.0,0.0,5.0,not handed in,")
+
+
 def test_progress_counts_the_scenarios_of_the_parts_that_are_graded(capsys) -> None:
     def told(plan: Plan, *parts: str) -> str:
-        progress = Progress(plan, parts)
         for part in parts:
-            progress.begin(part, plan.scenarios_of(part)[-1])
+            progress(plan, parts)(part, plan.scenarios_of(part)[-1])
         return capsys.readouterr().err
 
     servers, bridges = len(PLAN.scenarios) + 1, len(BRIDGE_SCENARIOS)

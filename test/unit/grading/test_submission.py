@@ -3,10 +3,50 @@
 from pathlib import Path
 
 import pytest
+from hosted_packages import tree
 
 from robocop_grading import submission
+from robocop_grading.errors import GradingError
+from robocop_hosting.errors import HostingError
 
 SERVER = "import rospy\nrospy.init_node('lab')\nactionlib.SimpleActionServer('robocop_goto_as')\n"
+
+
+def prepared(top: Path) -> submission.Submission:
+    return submission.prepare_submission(str(top), top, top, top, None)
+
+
+@pytest.mark.parametrize("other", [SERVER, "import rospy)\n"])
+def test_second_version_of_a_script_is_named_as_not_graded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, other: str
+) -> None:
+    monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
+    for name, code in (("robocop_goto_as.py", SERVER), ("robocop_goto_as_final.py", other), ("tools.py", "")):
+        (tmp_path / name).write_text(code)
+    assert "server: robocop_goto_as.py is graded, but not robocop_goto_as_final.py" in prepared(tmp_path).notes
+
+
+@pytest.mark.parametrize("launch, reason", [(False, "nothing to start"), (True, "Could not find roscpp")])
+def test_hand_in_in_cpp_is_told_so_before_what_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, launch: bool, reason: str
+) -> None:
+    def build(*_: object) -> None:
+        raise HostingError(reason)
+
+    monkeypatch.setattr(submission, "build", build)
+    monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
+    tree(tmp_path, {"package.xml": "<package><name>lab</name></package>", "src/server.cpp": "int main() {}"})
+    if launch:
+        tree(tmp_path, {"launch/robocop_goto_as.launch": "<launch/>"})
+    with pytest.raises(GradingError, match=f"src/server.cpp: C.. is not graded, only a server and .*\n.*{reason}"):
+        prepared(tmp_path)
+
+
+def test_two_packages_of_the_same_name_may_be_a_class(tmp_path: Path) -> None:
+    for name in ("anna", "ben"):
+        tree(tmp_path / name, {"package.xml": "<package><name>lab</name></package>", "robocop_goto_as.py": SERVER})
+    with pytest.raises(HostingError, match="2 packages found.*; is this folder a class"):
+        prepared(tmp_path)
 
 
 @pytest.mark.parametrize("more, expected", [("Subscriber('/move_base_simple/goal')\n", 1), ("# move_base_simple\n", 0)])
@@ -15,5 +55,4 @@ def test_bridge_in_the_servers_script_is_not_graded_without_a_word(
 ) -> None:
     monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
     (tmp_path / "lab.py").write_text(SERVER + more)
-    notes = submission.prepare_submission(str(tmp_path), tmp_path, tmp_path, tmp_path, None).notes
-    assert sum("lab.py has a bridge, too" in note for note in notes) == expected
+    assert sum("lab.py has a bridge, too" in note for note in prepared(tmp_path).notes) == expected

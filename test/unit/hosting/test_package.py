@@ -29,6 +29,34 @@ def test_packages_beside_it_are_built_if_it_depends_on_them(tmp_path: Path) -> N
     assert package.sources == {name: tmp_path / "src" / name for name in (LAB, "maths", "units")}
 
 
+def test_packages_outside_of_the_given_folder_are_built_with_it_if_it_depends_on_them(tmp_path: Path) -> None:
+    depends = {"drive": "<depend>messages</depend>", "messages": "", "other": ""}
+    for name, lines in depends.items():
+        tree(tmp_path, {f"src/{name}/package.xml": MANIFEST.format(name).replace("</package>", f"{lines}</package>")})
+    tree(tmp_path, {"src/drive/side.launch": "<launch/>", "src/broken/package.xml": "<package>"})
+    given = str(tmp_path / "src" / "drive")
+    assert list(find_package(given, beside=True).sources) == ["drive", "messages"]
+    assert list(find_package(given).sources) == ["drive"]
+
+
+@pytest.mark.parametrize(
+    "files, launch, expected",
+    [
+        ({"a/x.launch": "", "b/msg/A.msg": ""}, "", "a"),
+        ({"a/x.launch": "", "a/y.launch": "", "b/scripts/robocop_goto_as.py": ""}, "", "b"),
+        ({"a/x.launch": "", "b/y.launch": ""}, "y.launch", "b"),
+        ({f"{LAB}/robocop_goto_as.launch": "", "b/y.launch": ""}, "y.launch", "b"),
+        ({f"{LAB}/robocop_goto_as.launch": "", "b/y.launch": ""}, "", LAB),
+    ],
+)
+def test_of_several_packages_the_only_one_that_has_what_is_asked_for_is_taken(
+    tmp_path: Path, files: Dict[str, str], launch: str, expected: str
+) -> None:
+    names = {file.partition("/")[0] for file in files}
+    tree(tmp_path, {**files, **{f"{name}/package.xml": MANIFEST.format(name) for name in names}})
+    assert find_package(str(tmp_path), launch).name == expected
+
+
 @pytest.mark.parametrize(
     "files, expected",
     [
@@ -36,8 +64,13 @@ def test_packages_beside_it_are_built_if_it_depends_on_them(tmp_path: Path) -> N
         ({"package.xml": "<package>"}, "package.xml: not XML that can be read: no element found"),
         ({"package.xml": "<package/>"}, "package.xml: expected a <name>"),
         (
-            {"a/package.xml": MANIFEST.format("a"), "b/package.xml": MANIFEST.format("b")},
-            "2 packages found, give the",
+            {
+                "a/package.xml": MANIFEST.format("a"),
+                "b/package.xml": MANIFEST.format("b"),
+                "b/x.launch": "",
+                "a/y.launch": "",
+            },
+            r"2 packages found, give the path of one: /.*/a \(a: y.launch\), /.*/b \(b: x.launch\)",
         ),
         (
             {"package.xml": MANIFEST.format("p"), "b.launch": "<launch/>", "launch/a.launch": "<launch/>"},

@@ -24,6 +24,12 @@ def nested(tmp_path):
     subprocess.run(["rm", "-rf", folder], check=True)
 
 
+def test_pointer_of_git_lfs_is_not_read_as_the_file_that_it_stands_for(tmp_path):
+    (tmp_path / "a.py").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:0123\nsize 2048\n")
+    with pytest.raises(HostingError, match="a.py: this is a pointer of Git LFS, the file itself was not handed in"):
+        read_bytes(tmp_path / "a.py")
+
+
 def test_a_temporary_folder_is_removed_with_its_files():
     with tree.temporary_folder("robocop-test-") as folder:
         (folder / "file").touch()

@@ -142,3 +142,12 @@ def test_server_of_another_protocol_is_an_error(answer):
         with pytest.raises(MasterError, match=NO_MASTER):
             master.master_answers(uri_of(server))
         thread.join()
+
+
+def test_topics_of_a_type_that_are_published_and_not_subscribed_are_unheard():
+    twist = "geometry_msgs/Twist"
+    published = ["/cmd_vel", "/navi", "/odom", "/unknown"]
+    kinds = [["/cmd_vel", twist], ["/navi", twist], ["/odom", "nav_msgs/Odometry"]]
+    state = [[[topic, ["/a"]] for topic in published], [["/cmd_vel", ["/robocop_sim"]]], []]
+    with served(getSystemState=lambda _: [1, "", state], getTopicTypes=lambda _: [1, "", kinds]) as uri:
+        assert master.unheard(uri, twist) == ["/navi"]

@@ -174,7 +174,7 @@ def _wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float
     if not rospy.get_rostime():
         return standstill()
     silence = f"no answer from {action} for {time.monotonic() - started:.0f} s"
-    return f"{silence}{discovery.hint(action) or '; ' + discovery.advice(action)}"
+    return f"{silence}{discovery.hint(action) or '; ' + discovery.advice()}"
 
 
 def follow(client: actionlib.ActionClient, position: Point) -> int:

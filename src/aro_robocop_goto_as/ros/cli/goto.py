@@ -13,24 +13,25 @@ import time
 from pathlib import Path
 from typing import Any, Callable, Iterator, List
 
-import rosgraph
 import rospkg
 
 from ...errors import MasterError, RobocopError
+from ...launch_arguments import LaunchArguments
 from ...names import PACKAGE, robocop
-from ...probes import master
+from ...probes import master, settings
 from ...process import child, orphans, signals
 from ...process.ports import free_port
 from ..share import share
 from .goto_arguments import NOT_REACHED, SERVER_TIMEOUT, START_TIMEOUT, WRONG_ARGUMENTS, complain, parse
 
+LAUNCH_FILE = Path(share(), "launch", "robocop_goto_as.launch")
 END_TIMEOUT = 30.0  # [s, wall] for the system to end; roslaunch itself kills nodes after 17 s
 POLL = 0.05  # [s, wall]
 
 
 def main() -> None:
     """Entry point; exit status 0 when the goal is reached, 1 when not, 2 for invalid arguments."""
-    args = parse(rosgraph.myargv()[1:])
+    args = parse(sys.argv[1:])
     signals.interrupt_on_signal()
     try:
         sys.exit(_run(args))
@@ -40,27 +41,38 @@ def main() -> None:
 
 
 def _run(args: argparse.Namespace) -> int:
+    uri = master.master_uri()
     try:
-        system_runs = master.master_answers(master.master_uri())
-    except MasterError as error:
+        given = LaunchArguments.parse(LAUNCH_FILE, args.launch)
+    except RobocopError as error:
         complain(str(error))
+        return WRONG_ARGUMENTS
+    try:
+        problem = settings.problem()
+        system_runs = not problem and master.master_answers(uri)
+    except MasterError as error:
+        problem = str(error)
+    if problem:
+        complain(problem)
         return NOT_REACHED
     if system_runs:
-        if args.world:
-            complain("--world is ignored: a ROS system is already running")
-        return _import_go_to()(args, SERVER_TIMEOUT)
-    if args.robot:
-        complain(
-            f"--robot {args.robot}: no ROS master answers, and a simulator started for one goal has one robot only"
-        )
-        return NOT_REACHED
-    arguments = ["rviz:=false", "bridge:=false"]
-    if args.world:
-        try:
-            arguments.append(f"world:={_checked_world(args.world)}")
-        except RobocopError as error:
-            complain(f"--world: {error}")
+        if given.words:
+            complain(f"{given.words[0]} is for a simulator that goto would start, but a system is running on {uri}")
             return WRONG_ARGUMENTS
+        return _import_go_to()(args, SERVER_TIMEOUT)
+    return _go_in_own_system(args, given)
+
+
+def _go_in_own_system(args: argparse.Namespace, given: LaunchArguments) -> int:
+    if args.robot and not given.value("robots"):
+        complain(f"--robot {args.robot}: no ROS master answers; a simulator with several robots needs robots:=...")
+        return NOT_REACHED
+    try:
+        _check(given)
+    except RobocopError as error:
+        complain(str(error))
+        return WRONG_ARGUMENTS
+    arguments = ["rviz:=false", "bridge:=false", *given.words]
     print("robocop goto: no ROS master answers; starting a headless simulator for this goal", flush=True)
     log = Path(rospkg.get_ros_home(), "robocop_goto.log")
     status = NOT_REACHED
@@ -78,13 +90,12 @@ def _run(args: argparse.Namespace) -> int:
     return status
 
 
-def _checked_world(given: str) -> str:
-    """A world's name, or the absolute path of its file; RobocopError if it can't be read."""
-    from . import preflight  # only where it is needed, as it takes time
+def _check(given: LaunchArguments) -> None:
+    """RobocopError for values that the simulator would refuse."""
+    if given.words:
+        from . import preflight  # only where it is needed, as it takes time
 
-    world = os.path.abspath(given) if os.path.isfile(given) else given
-    preflight.check({"world": world})
-    return world
+        preflight.check(dict(word.split(":=", 1) for word in given.words))
 
 
 def _import_go_to() -> Callable[..., int]:
@@ -104,7 +115,7 @@ def _own_system(arguments: List[str], log: Path) -> "Iterator[child.Child[Any]]"
     os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
     log.parent.mkdir(parents=True, exist_ok=True)
     launcher = [sys.executable, f"{share()}/launch/robocop_launch.py"]
-    command = [*launcher, "--no-summary", "-p", str(port), PACKAGE, "robocop_goto_as.launch", *arguments]
+    command = [*launcher, "--no-summary", "-p", str(port), PACKAGE, LAUNCH_FILE.name, *arguments]
     orphans.adopt_orphans()
     system = None
     try:

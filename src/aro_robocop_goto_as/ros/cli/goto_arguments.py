@@ -13,6 +13,7 @@ SERVER_TIMEOUT = 5.0  # [s, wall] for the server of a running system
 START_TIMEOUT = 60.0  # [s, wall] for the server of a system started for this goal, also on a slow machine
 REACHED, NOT_REACHED, WRONG_ARGUMENTS = 0, 1, 2  # exit statuses; argparse's own is also 2
 NEGATIVE = re.compile(r"-[\d.]+([eE][-+]?\d+)?")
+OPTIONS = ("frame", "robot")  # which are no arguments of the simulator
 DEFAULT_FRAME = "map"  # in which RViz gives its 2D Nav Goals
 
 
@@ -20,8 +21,10 @@ def parse(argv: List[str]) -> argparse.Namespace:
     """The arguments; ends the program with exit status 2 if they are wrong."""
     parser = argparse.ArgumentParser(
         prog=typed("goto"),
-        description="Send one goal and follow it; exit status 0 when it is reached, 1 when not.",
-        epilog="Uses the running ROS system; without a ROS master it starts a headless simulator for this goal.",
+        description="Send one goal and follow it to its end.",
+        usage="%(prog)s X Y [--frame F] [--robot NAME] [NAME:=VALUE ...]",
+        epilog="Uses the running ROS system. Without a ROS master it starts a headless simulator for this goal, with "
+        "these arguments of `robocop run`. Exit status 0 if the goal is reached, 1 if not, 2 for wrong arguments.",
     )
     parser.add_argument("x", type=_metres, help="[m]")
     parser.add_argument("y", type=_metres, help="[m]")
@@ -31,9 +34,16 @@ def parse(argv: List[str]) -> argparse.Namespace:
         help="of X and Y: map (default; as a click in RViz), odom, base_footprint (relative to the robot), ...",
     )
     parser.add_argument("--robot", default="", help="name of one of several robots; frames are given without it")
-    parser.add_argument("--world", help="world of the simulator, if one has to be started")
+    parser.add_argument("--world", help="the same as world:=WORLD")
+    parser.add_argument("launch", nargs="*", metavar="NAME:=VALUE", help="such as world:=stage_1; see robocop help run")
     # argparse takes -5e-1 for an option, but not with a space before it.
-    return parser.parse_args([f" {word}" if NEGATIVE.fullmatch(word) else word for word in argv])
+    args = parser.parse_intermixed_args([f" {word}" if NEGATIVE.fullmatch(word) else word for word in argv])
+    args.launch += [f"world:={args.world}"] if args.world else []
+    for word in args.launch:
+        option = word.partition(":=")[0]
+        if option in OPTIONS:
+            parser.error(f"got {word}; did you mean --{option} {word.partition(':=')[2]}?")
+    return args
 
 
 def _metres(text: str) -> float:

@@ -33,14 +33,14 @@ T = TypeVar("T")
 
 
 class Launcher(ROSLaunchParent, ProcessListener):
-    """roslaunch's parent of all nodes; it notes whether the simulator has failed, and tells of a clean end if quiet."""
+    """roslaunch's parent of all nodes; it notes whether the simulator has failed, and reports a clean end if brief."""
 
     failed = False  # whether a required node of PACKAGES has; an RViz that crashes when it closes is no failure
 
-    def __init__(self, *args: Any, quiet: bool, **options: Any) -> None:
-        """Arguments as those of ROSLaunchParent; quiet: roslaunch's own messages go to a log."""
-        super().__init__(*args, process_listeners=[self], force_log=quiet, **options)
-        self._quiet = quiet
+    def __init__(self, *args: Any, brief: bool, **options: Any) -> None:
+        """Arguments as those of ROSLaunchParent; brief: roslaunch's own messages go to a log."""
+        super().__init__(*args, process_listeners=[self], **options)
+        self._brief = brief
 
     def process_died(self, process_name: str, exit_code: Optional[int]) -> None:
         """Called by roslaunch; exit_code is minus the signal's number after a signal, None if unknown."""
@@ -49,18 +49,19 @@ class Launcher(ROSLaunchParent, ProcessListener):
             return
         if exit_code != 0 and process.required and process.package in PACKAGES:
             self.failed = True
-        if exit_code == 0 and self._quiet and not (process.respawn or self.pm.is_shutdown):
+        if exit_code == 0 and self._brief and not (process.respawn or self.pm.is_shutdown):
             name = process_name.rpartition("-")[0]
-            print(f"[WARN] {name} has ended, without an error, as after `rosnode kill`", file=sys.stderr)
+            reasons = "as after `rosnode kill`, or if its program has nothing left to do (is rospy.spin() called?)"
+            print(f"[WARN] {name} has ended, without an error, {reasons}", file=sys.stderr)
 
 
-def launch(arguments: List[str]) -> int:
+def launch(arguments: List[str], after_overview: Callable[[], None]) -> int:
     """Run a launch file until it ends; returns the exit status."""
     options = _parsed(arguments)
     deferred = signals.Deferred()
     try:
         _check(options.file)
-        return _run(options, deferred)
+        return _run(options, deferred, after_overview)
     except RobocopError as error:
         print(f"[FATAL] {error.code}: {error}", file=sys.stderr)  # as the simulator's own
     except RecursionError:  # launch/each_robot.launch includes itself for the next robot
@@ -74,26 +75,28 @@ def launch(arguments: List[str]) -> int:
 def _parsed(arguments: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="robocop_launch.py", description=__doc__)
     parser.add_argument("-p", "--port", type=int, help="of the ROS master, if one has to be started")
-    parser.add_argument("--no-summary", action="store_true", help="do not list parameters and nodes at the start")
+    parser.add_argument("--no-summary", action="store_true", help="do not show roslaunch's own messages")
     parser.add_argument("--overview", action="store_true", help="show how to use the system when it runs")
     parser.add_argument("--quiet", action="store_true", help="show only that, warnings and errors")
     parser.add_argument("file", nargs="+", metavar="[PACKAGE] FILE [NAME:=VALUE...]")
     return parser.parse_args(arguments)
 
 
-def _run(options: argparse.Namespace, deferred: signals.Deferred) -> int:
+def _run(options: argparse.Namespace, deferred: signals.Deferred, after_overview: Callable[[], None]) -> int:
     """Start the processes with signals deferred, and wait for their end; returns the exit status."""
     files = rlutil.resolve_launch_arguments(options.file)
     run_id = rlutil.get_or_generate_uuid(None, False)
     logs = Path(rospkg.get_log_dir(), run_id)
-    screen = _quiet(logs) if options.quiet else sys.stdout
+    brief = options.quiet or options.no_summary
+    screen = _to_log(logs, options.quiet) if brief else sys.stdout
     roslaunch.configure_logging(run_id)
     rlutil.change_terminal_name(files, False)
     launcher = Launcher(
         run_id,
         files,
         port=options.port,
-        quiet=options.quiet,
+        force_log=options.quiet,
+        brief=brief,
         show_summary=not options.no_summary,
     )
     roslaunch.Process(PACKAGE, "launcher", [], {})  # never started: the first one installs roslaunch's signal handlers
@@ -107,8 +110,9 @@ def _run(options: argparse.Namespace, deferred: signals.Deferred) -> int:
         running = [node for node in launcher.config.nodes if not is_page(node) or _has_started(launcher, node)]
         if not launcher.pm.is_shutdown:
             print(overview(running, simulator, logs, not options.quiet), file=screen, flush=True)
+            after_overview()
     if not options.no_summary:
-        with deferred:  # one while it logs, of which the monitor's thread then waits for the lock, for 20 s
+        with deferred:  # a signal during logging would leave its lock held, and the monitor would wait 20 s for it
             rlutil.check_log_disk_usage()
     launcher.spin()
     return FAILED if failed or launcher.failed else 0
@@ -180,21 +184,24 @@ def _answer(launcher: Launcher, ask: Callable[[], T]) -> Optional[T]:
     return None
 
 
-def _quiet(folder: Path) -> TextIO:
-    """Send what this process and its children print to a log file, but not their errors; returns the screen."""
+def _to_log(folder: Path, with_children: bool) -> TextIO:
+    """Send what this process prints, but not its errors, to a log file, also what its children print if
+    `with_children`; returns the screen.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     screen = os.fdopen(os.dup(STDOUT), "w", encoding="utf-8", errors="replace")
-    with open(folder / "roslaunch.log", "ab") as log:
-        os.dup2(log.fileno(), STDOUT)
+    sys.stdout = open(folder / "roslaunch.log", "a", buffering=1, encoding="utf-8", errors="replace")
+    if with_children:
+        os.dup2(sys.stdout.fileno(), STDOUT)
     os.environ[RVIZ_LOG] = str(folder / "rviz.log")
     return screen
 
 
-def main(arguments: Optional[List[str]] = None) -> None:
+def main(arguments: Optional[List[str]] = None, after_overview: Callable[[], None] = lambda: None) -> None:
     """Launch what these arguments, or the program's own, name; exits with the status of launch()."""
     status = FAILED
     try:
-        status = launch(sys.argv[1:] if arguments is None else arguments)
+        status = launch(sys.argv[1:] if arguments is None else arguments, after_overview)
     finally:
         signals.ignore_all()
     sys.exit(status)

@@ -1,12 +1,14 @@
 """What ./robocop run prints when everything runs: the world, the robots, what to do next."""
 
+import os
 import re
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from ...errors import RobocopError
-from ...names import SERVER, WEB, robocop
+from ...names import COMMAND_VARIABLE, SERVER, WEB, robocop
 from ...param_loading import from_dict
+from ...probes import master
 from ...sim_params import SimParams
 from ...web.access import default_host, url
 from ...web_params import WebParams
@@ -27,7 +29,7 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
     given = simulator or {}
     rows = [] if simulator is None else [*_simulated(given)]
     robots = sorted({node.namespace.strip("/") for node in running if node.name == SERVER} - {""})
-    command = robocop()
+    command = _command()
     for node in running:
         if is_page(node):
             waits = "; it plays when the page is opened" if REPLAYED in node.args and "rviz" not in nodes else ""
@@ -51,6 +53,13 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
         ("all messages", "appear below" if messages_shown else in_files),
     ]
     return "\n".join(f"{name:14}{text}" for name, text in rows) + "\n"
+
+
+def _command() -> str:
+    """The command line of ./robocop in a second terminal, which may not know this one's master."""
+    uri, command = master.master_uri(), robocop()
+    is_known = uri == master.DEFAULT_URI or COMMAND_VARIABLE in os.environ  # a container has one environment
+    return command if is_known else f"ROS_MASTER_URI={uri} {command}"
 
 
 def is_page(node: Any) -> bool:

@@ -43,12 +43,9 @@ def hint(action: str) -> str:
     return f"; there is {' and '.join(map(repr, others))} of the same type{question}"
 
 
-def advice(action: str) -> str:
-    """What a user can do about a server that is still missing."""
-    missing = master.no_simulator(master.master_uri())
-    if missing:
-        return missing
-    namespace = rospy.resolve_name(action).rpartition("/")[0]
-    setting = f"env ROS_NAMESPACE={namespace} " if namespace else ""
-    command = f"{robocop()} shell {setting}rosrun aro_robocop_goto_as robocop_goto_as.py"
-    return f"the server's output may say why it ended; to start it again, in another terminal: {command}"
+def advice() -> str:
+    """What a user can do about a server that is still missing, whichever system runs."""
+    return master.no_simulator(master.master_uri()) or (
+        "if a server has ended, the terminal of its system may say why: correct that, and start the system again "
+        f"({robocop()} run has a server, {robocop()} sim --with the package's own, {robocop()} sim none)"
+    )

@@ -170,7 +170,7 @@ class Bridge:
             if self.waiting:
                 text += f"; goal {self.waiting} waits for it"
             if time.monotonic() - self.last_seen > SERVER_TIMEOUT:
-                text, log = f"{text}; {discovery.advice(ACTION)}", rospy.logwarn
+                text, log = f"{text}; {discovery.advice()}", rospy.logwarn
             return self.publish_status(text, log)
         self.last_seen = time.monotonic()
         with self.sending:

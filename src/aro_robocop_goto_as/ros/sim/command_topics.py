@@ -17,6 +17,8 @@ from ...simulation.running import Simulation
 from .. import convert
 from ..connected_nodes import publishers_of, sender
 
+# A TurtleBot 2 has a multiplexer before its base (turtlebot_bringup, kobuki_node). Here the newest command counts.
+OTHER_TOPICS = {"turtlebot2": ("cmd_vel_mux/input/navi", "cmd_vel_mux/input/teleop", "mobile_base/commands/velocity")}
 UNNAMED = "unknown"  # rospy's name for a publisher whose connection is still being made
 
 
@@ -39,10 +41,10 @@ class CommandTopics:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        names = [robot.name for robot in simulation.simulator.robots]
-        self._subscribers = [self._subscribe(robot, name) for robot, name in enumerate(names)]
+        robots = simulation.simulator.robots
+        self._subscribers = [self._subscribe(number, it.name, it.model.name) for number, it in enumerate(robots)]
 
-    def _subscribe(self, robot: int, name: str) -> List[rospy.Subscriber]:
+    def _subscribe(self, robot: int, name: str, model: str) -> List[rospy.Subscriber]:
         jobs, controllers = self._simulation.jobs, self._simulation.controllers
 
         def on_command(message: Twist) -> None:
@@ -54,7 +56,10 @@ class CommandTopics:
             jobs.post(partial(controllers.answer, controller, stamp_ns, twist))
 
         # TCP_NODELAY: otherwise the publisher's kernel may hold a command back for 40 ms, at ten times real time 0.4 s.
-        subscribers = [rospy.Subscriber(prefixed(name, "cmd_vel"), Twist, on_command, tcp_nodelay=True)]
+        subscribers = [
+            rospy.Subscriber(prefixed(name, topic), Twist, on_command, tcp_nodelay=True)
+            for topic in ("cmd_vel", *OTHER_TOPICS.get(model, ()))
+        ]
         if controllers.in_lockstep:
             topic = prefixed(name, "tick_answer")
             subscribers.append(rospy.Subscriber(topic, TickAnswer, on_answer, tcp_nodelay=True))

@@ -84,6 +84,10 @@ def _log(p: SimParams, world: World, simulator: Simulator) -> None:
         values = ", ".join(f"{name} {value:g}" for name, value in given.items())
         rospy.loginfo("scan_profile %s, with %s", scan.scan_profile, values)
     if world.approximated:
-        rospy.logwarn("different from %s: %s", world.path, ", ".join(world.approximated))
+        rospy.logwarn(
+            "different from %s, and what is left out is neither seen nor touched: %s",
+            world.path,
+            ", ".join(world.approximated),
+        )
     if world.ignored:
         rospy.loginfo("ignored in %s: %s", world.path, ", ".join(world.ignored))

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Iterator
 
 from ...errors import WebError
+from ...names import robocop
 from ...web import access
 from ...web_params import WebParams
 
@@ -24,7 +25,7 @@ def start_server(p: WebParams) -> Any:
     try:
         import viser
     except ImportError as error:
-        raise WebError(f"{error}; run ./robocop web, which installs what the page needs") from error
+        raise WebError(f"{error}; run {robocop()} web, which installs what the page needs") from error
     _require_free(p.web_host, p.web_port)
     with _checked_requests(p), contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
         server = viser.ViserServer(host=p.web_host, port=p.web_port, verbose=False)  # unnamed: it says "Connecting"

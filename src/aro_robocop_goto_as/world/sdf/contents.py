@@ -84,8 +84,8 @@ class Contents:
         if self.missing:
             names = ", ".join(f"{name} ({place})" for name, place in self.missing.items())
             yield (
-                f"models that are not on this machine are left out, and robots neither see nor touch them: {names}; to "
-                "have them, put their folders beside the world file or into ~/.gazebo/models; those of Gazebo are at "
+                f"models that are not on this machine are left out: {names}; to have them, put their folders beside "
+                "the world file or into ~/.gazebo/models; those of Gazebo are at "
                 "https://github.com/osrf/gazebo_models"
             )
 

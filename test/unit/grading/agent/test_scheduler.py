@@ -8,12 +8,12 @@ from robocop_grading.agent.scheduler import Scheduler, Waiter
 def test_a_thread_is_no_longer_waited_for_only_if_no_other_runs_and_the_next_one_gets_its_turn():
     scheduler = Scheduler()
     scheduler.running = {1}
-    assert scheduler.wait_for_none_of({2}) is True  # another thread runs
-    assert scheduler.unawaited == set()
-    assert scheduler.wait_for_none_of({1}) is False  # nobody is next
-    assert scheduler.unawaited == {1}
+    assert scheduler.move_to_background({2}) is True  # another thread runs
+    assert scheduler.background == set()
+    assert scheduler.move_to_background({1}) is False  # nobody is next
+    assert scheduler.background == {1}
     scheduler.queue.append(Waiter(3))
-    assert scheduler.wait_for_none_of({1}) is True
+    assert scheduler.move_to_background({1}) is True
     assert scheduler.running == {1, 3} and not scheduler.queue
 
 
@@ -23,7 +23,7 @@ def test_all_threads_wait_when_none_runs_or_starts():
     scheduler.running = {1}
     assert scheduler.wait_until_idle(0.01) is False
     scheduler.running, scheduler.starting = set(), 1
-    assert scheduler.wait_until_idle(0.01) is False and not scheduler.is_unawaited()
+    assert scheduler.wait_until_idle(0.01) is False and not scheduler.only_background_runs()
 
 
 def test_no_other_thread_gets_a_turn_while_one_is_being_started():
@@ -31,17 +31,17 @@ def test_no_other_thread_gets_a_turn_while_one_is_being_started():
     starting, woken = scheduler.new_thread(), Waiter(3)
     with scheduler.guard:
         scheduler.wake(woken)
-    assert list(scheduler.queue) == [woken] and scheduler.wait_for_none_of(set())
-    scheduler.no_thread(starting)
+    assert list(scheduler.queue) == [woken] and scheduler.move_to_background(set())
+    scheduler.cancel_start(starting)
     assert scheduler.running == {3} and not scheduler.starting
 
 
 def test_a_forked_child_has_none_of_the_threads_and_lives_on_the_wall_clock():
     scheduler = Scheduler()
-    scheduler.running, scheduler.unawaited, scheduler.calling, scheduler.starting = {1}, {1}, {1}, 1
+    scheduler.running, scheduler.background, scheduler.calling, scheduler.starting = {1}, {1}, {1}, 1
     scheduler.queue.append(Waiter(2))
     child = os.fork()
     if not child:
-        left = scheduler.active, scheduler.running, scheduler.unawaited, scheduler.calling, scheduler.queue
+        left = scheduler.active, scheduler.running, scheduler.background, scheduler.calling, scheduler.queue
         os._exit(any(left) or scheduler.starting)
     assert os.waitpid(child, 0)[1] == 0

@@ -1,11 +1,13 @@
 """The bridge's checks on constructed records."""
 
+import math
 from dataclasses import replace
-from typing import Tuple
+from typing import Callable, Iterable, List, Tuple
 
 import pytest
 from grading_records import LIMITS
 
+from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from robocop_grading import record as rec
 from robocop_grading.checks import CHECKS, PASSED, Failed
 from robocop_grading.checks.bridge import about_pending
@@ -40,6 +42,10 @@ def _reported(active: str, succeeded: str) -> Record:
         ("the goal is active: ACTIVE", "the goal is done: SUCCEEDED"),
         ("published on /status: 1", "published on /status: 0"),  # numbers of its own
         ("state 2", "state 7"),  # of actionlib's CommState
+        ("state 2", "state 4"),  # numbers of its own
+        ("[INFO] ACTIVE: True", "[INFO] ACTIVE: False"),
+        ("Stav akce: 1 (0 PENDING, 1 ACTIVE, 3 SUCCEEDED)", "Stav akce: 3 (0 PENDING, 1 ACTIVE, 3 SUCCEEDED)"),
+        ("PENDING, ACTIVE, SUCCEEDED? jede", "PENDING, ACTIVE, SUCCEEDED? hotovo"),
         ("ACTIVE", "DONE"),
         ("state: ACTIVE", "state: LOST"),  # get_state() after stop_tracking_goal()
         ("all is well", "all is well"),
@@ -63,7 +69,6 @@ def test_true_reports_and_those_in_other_words_pass(active: str, succeeded: str)
         ("PENDING", "PENDING", "reports PENDING while the goal is ACTIVE"),
         ("active", "aborted", "reports ABORTED while the goal is SUCCEEDED"),
         ("PREEMPTED", "ABORTED", "shifted: PREEMPTED is reported for ACTIVE"),
-        ("state 2", "state 4", "shifted"),
         ("PENDING or ACTIVE or SUCCEEDED", "PENDING or ACTIVE or SUCCEEDED", "names several states says nothing if"),
         ("", "", 'say nothing about the state, as in ""'),
         ("[INFO] [1668.1, 2.3]: server:", "[INFO] server: done", 'as in "server:"'),
@@ -75,6 +80,100 @@ def test_true_reports_and_those_in_other_words_pass(active: str, succeeded: str)
 )
 def test_reports_that_are_empty_or_untrue_are_named(active: str, succeeded: str, words: str) -> None:
     verdict = CHECKS["reports_status"](_reported(active, succeeded), LIMITS)
+    assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+# Four goals, like those of the grader's scenario: when each is sent, for how long it is active [s], and how it ends.
+DRIVES = (
+    (1.0, 30.0, rec.SUCCEEDED),
+    (39.0, 5.0, rec.ABORTED),
+    (55.0, 2.0, rec.PREEMPTED),
+    (57.4, 5.0, rec.PREEMPTED),
+)
+KEPT = 5.0  # [s] for which an ended goal stays in an action server's status
+
+
+def _states(time: float, kept: float = math.inf) -> List[int]:
+    """The states of all goals at a time, the newest goal's last; without those that ended `kept` [s] before."""
+    return [
+        rec.ACTIVE if time < sent + active else end
+        for sent, active, end in DRIVES
+        if sent <= time < sent + active + kept
+    ]
+
+
+def _named(states: Iterable[int]) -> List[str]:
+    return [f"state: {rec.STATUS_NAMES[state]}" for state in states]
+
+
+def _by_the_clock(time: float) -> int:
+    """ACTIVE for 20 s after each click, then SUCCEEDED."""
+    return rec.ACTIVE if time < DRIVES[len(_states(time)) - 1][0] + 20.0 else rec.SUCCEEDED
+
+
+def _driven(report: Callable[[float], Iterable[str]], period: float) -> Record:
+    """A bridge whose timer reports these lines about a time."""
+    goals, statuses = [], []
+    for number, (sent, active, end) in enumerate(DRIVES):
+        goals.append(rec.Goal(str(number), 1.2, -0.4, sent, ""))
+        for time, state in ((sent, rec.PENDING), (sent, rec.ACTIVE), (sent + active, end)):
+            statuses.append(rec.Status(time, str(number), state))
+    times = [1.0 + period * number for number in range(1, round(65.0 / period))]
+    lines = tuple(rec.Line(time, text) for time in times for text in report(time))
+    marks = {"watching": 1.0, "watched": 31.0}
+    return Record("click", "bridge", goals=tuple(goals), statuses=tuple(statuses), lines=lines, marks=marks)
+
+
+CZECH = ("ceka", "jede", "zruseno", "hotovo", "prekazka")
+LEGEND = "(0 PENDING, 1 ACTIVE, 2 PREEMPTED, 3 SUCCEEDED)"
+
+
+@pytest.mark.parametrize("period", [0.1, 1.0, 2.0, 5.0, 10.0])
+@pytest.mark.parametrize(
+    "report",
+    [
+        lambda time: _named(_states(time)[-1:]),
+        lambda time: [f"status {_states(time)[-1]}"],
+        lambda time: [f"state: {1 if _states(time)[-1] == rec.ACTIVE else 2}"],  # of actionlib's SimpleGoalState
+        lambda time: [f"stav: {CZECH[_states(time)[-1]]}, {time:.1f} s"],
+        lambda time: [f"Stav akce: {_states(time)[-1]} {LEGEND}, {time:.1f} s"],
+        lambda time: [f"State: {_states(time)[-1]} {LEGEND}"],
+        lambda time: [LEGEND, f"stav: {_states(time)[-1]}"],
+        lambda time: [f"state: {_states(time)[-1]}", f"previous: {_named(_states(time - 1.0)[-1:])}"],
+        lambda time: ["still active"] if _states(time)[-1] == rec.ACTIVE else [],
+        lambda time: [str(_named(_states(time, KEPT)))],
+        lambda time: _named(_states(time, KEPT)),
+        lambda time: [f"connected, {len(_states(time))} goals"],
+    ],
+)
+def test_reports_that_follow_the_truth_pass_in_any_words(report: Callable[[float], List[str]], period: float) -> None:
+    assert CHECKS["reports_status"](_driven(report, period), LIMITS) is PASSED
+
+
+@pytest.mark.parametrize("period", [0.5, 1.0, 2.0])
+def test_reports_that_are_late_by_one_pass(period: float) -> None:
+    late = _driven(lambda time: _named(_states(max(1.0, time - period))[-1:]), period)
+    assert CHECKS["reports_status"](late, LIMITS) is PASSED
+
+
+@pytest.mark.parametrize("period", [0.1, 1.0, 2.0])
+@pytest.mark.parametrize(
+    "report, words",
+    [
+        (lambda time: _named([(0, 1, 3)[round(time * 10) // 7 % 3]]), "while the goal is ACTIVE"),
+        (lambda time: _named([_by_the_clock(time)]), "reports ACTIVE while the goal is ABORTED"),
+        (lambda time: [f"state: {_by_the_clock(time)}"], "reports ACTIVE while the goal is ABORTED"),
+        (lambda time: [f"Stav akce: {_by_the_clock(time)} {LEGEND}"], "names the same ones whatever the true one is"),
+        (lambda time: _named(_states(time)), "SUCCEEDED, the state of an earlier goal"),
+        (lambda time: _named(_states(time, KEPT)[:1]), "PREEMPTED, the state of an earlier goal, while the"),
+        (lambda time: _named([min(_states(time)[-1], 3)]), "reports SUCCEEDED while the goal is ABORTED"),
+        (lambda time: _named(_states(time)[-1:]) if time < 44.0 else [], "Nothing is reported while this goal is"),
+    ],
+)
+def test_reports_that_do_not_follow_the_truth_fail(
+    report: Callable[[float], List[str]], words: str, period: float
+) -> None:
+    verdict = CHECKS["reports_status"](_driven(report, period), LIMITS)
     assert isinstance(verdict, Failed) and words in verdict.cause
 
 
@@ -91,12 +190,70 @@ def test_too_few_reports_while_the_goal_is_active_fail(times: Tuple[float, ...],
         (1.2, 0.4, "sign of y"),
         (0.0, 0.0, "as if it were not set"),
         (1.2, 0.0, "y is not set"),
+        (1.0, 0.0, "rounded to whole numbers"),
         (5.0, 5.0, "does not have the message's position"),
     ],
 )
 def test_cause_of_a_goal_elsewhere_than_the_click_is_named(x: float, y: float, words: str) -> None:
     verdict = CHECKS["forwards_goal"](_clicked(x, y), LIMITS)
     assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+def test_goal_whose_click_is_rounded_to_a_tenth_of_a_metre_fails() -> None:
+    record = replace(_clicked(1.2, -0.4), clicks=(rec.Click(0.0, "odom", 1.24, -0.43, 1.24, -0.43),))
+    verdict = CHECKS["forwards_goal"](record, LIMITS)
+    assert isinstance(verdict, Failed) and verdict.cause.startswith("The position is rounded:")
+
+
+@pytest.mark.parametrize("own_server", [0.0, 1.0])
+def test_bridge_with_an_action_server_of_its_own_does_not_wait_for_the_real_one(own_server: float) -> None:
+    verdict = CHECKS["waits_for_server"](Record("no_server", "bridge", marks={"own_server": own_server}), LIMITS)
+    assert isinstance(verdict, Failed) == bool(own_server)
+    assert not own_server or "has an action server robocop_goto_as of its own" in verdict.cause
+
+
+ROBOT, IN_WORLD = Pose2D(0.6, 0.3, 1.0), Pose2D(40.4, -14.3, 1.7)  # from odom and from the world
+
+
+def _in_frame(frame: str, goal: Pose2D) -> Record:
+    """A click at (1.0, 0.2) in a frame becomes a goal."""
+    odom_from_frame = ROBOT if frame == "base_footprint" else compose(ROBOT, inverse(IN_WORLD))
+    there = compose(odom_from_frame, Pose2D(1.0, 0.2))
+    return Record(
+        "frame",
+        "bridge",
+        samples=(rec.Sample(0.9, *ROBOT, *IN_WORLD, 0.0, 0.0, 9.0, False),),
+        clicks=(rec.Click(1.0, frame, 1.0, 0.2, there.x, there.y),),
+        goals=(rec.Goal("g", goal.x, goal.y, 1.0, ""),),
+    )
+
+
+MAP = compose(ROBOT, inverse(IN_WORLD))  # odom_from_map
+
+
+@pytest.mark.parametrize(
+    "frame, odom_from_frame, words",
+    [
+        ("base_footprint", Pose2D(), "base_footprint were passed on as if they were in odom"),
+        ("base_footprint", MAP, "in base_footprint is transformed as if it were in map"),
+        ("map", ROBOT, "in map is transformed as if it were in base_footprint"),
+        ("base_footprint", inverse(ROBOT), "the wrong way round, as from odom to base_footprint"),
+        ("map", inverse(MAP), "the wrong way round, as from odom to map"),
+        ("base_footprint", ROBOT._replace(yaw=0.0), "only shifted from base_footprint to odom, not turned"),
+        ("base_footprint", Pose2D(yaw=ROBOT.yaw), "only turned from base_footprint to odom, not shifted"),
+        ("base_footprint", Pose2D(5.0), "The transform is wrong"),
+    ],
+)
+def test_cause_of_a_wrong_transform_is_named(frame: str, odom_from_frame: Pose2D, words: str) -> None:
+    goal = compose(odom_from_frame, Pose2D(1.0, 0.2))
+    verdict = CHECKS["goal_frame"](_in_frame(frame, goal), LIMITS)
+    assert isinstance(verdict, Failed) and words in verdict.cause
+
+
+@pytest.mark.parametrize("frame, odom_from_frame", [("base_footprint", ROBOT), ("map", MAP)])
+def test_goal_in_odom_passes(frame: str, odom_from_frame: Pose2D) -> None:
+    goal = compose(odom_from_frame, Pose2D(1.0, 0.2))
+    assert CHECKS["goal_frame"](_in_frame(frame, goal), LIMITS) is PASSED
 
 
 def test_misspelt_name_of_an_action_client_is_quoted() -> None:

@@ -86,7 +86,19 @@ WRONG: List[Tuple[str, Record, str]] = [
     ("one_ending", changed(results=RIGHT.results * 2), "two terminal states"),
     ("one_ending", logged(ERROR + TWO), "two terminal states"),
     ("one_ending", logged(f"[ERROR] {TWO}"), "two terminal states"),
-    ("one_ending", logged(WARN + NONE), "returned without calling"),
+    *(
+        (
+            "one_ending",
+            logged(WARN + NONE, statuses=(rec.Status(3.0, "g", rec.ABORTED),), **fields),
+            f"or set_preempted, {path}",
+        )
+        for path, fields in (
+            ("when the goal was cancelled", {"cancels": (rec.Cancel(2.5, "g"),)}),
+            ("when a newer goal came", {"goals": (*RIGHT.goals, replace(RIGHT.goals[0], id="newer", time=2.5))}),
+            ("when the goal was reached", {"goals": (replace(RIGHT.goals[0], x=0.1, y=0.1),)}),
+            ("when an obstacle was ahead", {"samples": tuple(replace(it, ahead=0.28) for it in RIGHT.samples)}),
+        )
+    ),
     (
         "action_server",
         Record("start", "server", up=False, servers=("/robovop_goto_as",), types=("x/GoToPositionAction",)),

@@ -54,11 +54,11 @@ def test_what_can_not_be_read_from_a_folder_states_the_reason(tmp_path):
     with open(tmp_path / "large" / "hole", "wb") as hole:
         hole.truncate(10**12)
     assert problem_of(tmp_path / "pipes") == "pipe: expected a file, folder or link"
-    assert problem_of(tmp_path / "large") == "larger than 64 MB"
+    assert problem_of(tmp_path / "large").startswith(
+        "larger than 64 MB; the largest file in it is hole with 953674.3 MB"
+    )
 
 
 def test_a_folder_without_hand_ins_is_refused(tmp_path):
     with pytest.raises(GradingError, match="no hand-ins"):
         collect(tmp_path)
-    with pytest.raises(GradingError, match="expected a folder with a folder, a zip or tar archive, or a Python file"):
-        collect(tmp_path / "nothing")

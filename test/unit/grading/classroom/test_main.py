@@ -5,10 +5,10 @@ import time
 import pytest
 from grading_records import PLAN, keep, keep_grade
 
-from robocop_grading.classroom.main import Class, chosen, class_seed
+from robocop_grading.classroom.main import Gradebook, chosen, class_seed
 from robocop_grading.classroom.results import Results
 from robocop_grading.errors import GradingSetupError
-from robocop_grading.judge import Grade
+from robocop_grading.grades import Grade
 from robocop_grading.plan_file import MAX_SEED
 
 
@@ -32,7 +32,7 @@ def group(tmp_path):
     keep_grade(results, Grade("ben", (), ("ben.rar: a .rar file",)))
 
     def make(again=()):
-        return Class(tmp_path, results, PLAN, hand_ins, chosen(again, hand_ins) if again != () else ())
+        return Gradebook(tmp_path, results, PLAN, hand_ins, chosen(again, hand_ins) if again != () else ())
 
     return make
 
@@ -59,7 +59,7 @@ def test_class_says_how_fast_it_is_and_who_is_not_gradable_and_why(group, monkey
     monkeypatch.setattr(made, "_started", time.monotonic() - 60.0)
     keep(made.results, "carl.zip", 8.0)
     line = made.add("carl.zip", "")
-    assert line == "[3/4] carl.zip: 8 of 8 points, 0 of 1 extra, 3 s; 1.0 a minute, about 2 min left"
+    assert line == "[3/4] carl.zip: 8 of 1 points, 3 s; 1.0 a minute, about 2 min left"
     assert made.add("řehoř", "no grade: the machine had no time") == "řehoř: no grade: the machine had no time"
     lines = made.summary_lines()
     assert lines[:2] == ["2 judged, 2 not gradable", "mean 4.25, median 4.25 of 8 points"]
@@ -68,3 +68,16 @@ def test_class_says_how_fast_it_is_and_who_is_not_gradable_and_why(group, monkey
         "not gradable: řehoř: no grade: the machine had no time",
     ]
     assert made.figures.not_judged == 2
+
+
+def test_time_left_is_estimated_from_hand_ins_that_ran(group, monkeypatch):
+    made = group(["ben"])
+    monkeypatch.setattr(made, "_started", time.monotonic() - 30.0)
+    made.add("ben", "")
+    assert made.pace == "", "what can't be graded takes no time"
+    made.waiting["carl.zip"] = ""  # it can't be read
+    keep(made.results, "řehoř", 8.0)
+    made.add("řehoř", "")
+    assert made.pace == ""
+    made.waiting["anna"] = "a digest"
+    assert made.pace == "2.0 a minute, about 1 min left"

@@ -2,17 +2,19 @@
 
 import csv
 import io
+import re
 import shutil
 
 from grading_records import PLAN, judged, keep
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robocop_grading.classroom.results import Result, Results, page
+from robocop_grading.classroom.results import Results, StoredGrade, page
 from robocop_grading.classroom.table import table
+from robocop_grading.files.exports import Person
 
 RESULTS = (
-    Result(
+    StoredGrade(
         "=anna",
         (
             judged("cancel", "server", 0.0, "<cause> at 1.5"),
@@ -20,8 +22,8 @@ RESULTS = (
             judged("goal_frame", "bridge", 1.0, extra=True),
         ),
     ),
-    Result("ben", (judged("cancel", "server", 0.0, "<cause> at -3"),), ("=cmd",)),
-    Result("carl", (), ("nothing to grade",)),
+    StoredGrade("ben", (judged("cancel", "server", 0.0, "<cause> at -3"),), ("=cmd",)),
+    StoredGrade("carl", (), ("nothing to grade",)),
 )
 
 
@@ -66,9 +68,28 @@ def test_table_has_one_row_per_hand_in_and_no_spreadsheet_formulas():
     assert columns["problem"] == ["", "'=cmd", "nothing to grade", "a worker died"]
 
 
+def test_table_has_what_moodle_and_gradescope_import_where_they_say_who_handed_in():
+    people = {"=anna": Person("Participant 7", "Anna Nováková"), "dora": Person("", "Dora", "d@example.edu", "-42")}
+    rows = read(table(RESULTS, PLAN, {"dora": "a worker died"}, people))
+    imported = [[row[key] for key in ("Identifier", "Full name", "Email", "SID", "Grade")] for row in rows]
+    assert imported[0] == ["Participant 7", "Anna Nováková", "", "", "0.5"]
+    assert imported[1:] == [["", "", "", "", "0.0"], [""] * 5, ["", "Dora", "d@example.edu", "'-42", ""]]
+    assert "Grade" not in read(table(RESULTS, PLAN))[0]
+
+
+def test_advice_is_told_apart_from_problems_and_no_text_ends_in_the_middle_of_a_word():
+    advised = StoredGrade("anna", RESULTS[0].checks, ("bridge: robocop_rviz " * 40,), ("line 7: use rospy.Rate",))
+    html = page("class", [advised], PLAN, {}, running=False)
+    (problems,) = re.findall("<span class=failed>(.*?)</span>", html)
+    assert len(problems) <= 304 and problems.endswith(" robocop_rviz ...")
+    assert re.search("class=note><summary>1 note</summary>.*line 7: use rospy.Rate", html)
+    (row,) = read(table([advised], PLAN))
+    assert row["notes"] == "line 7: use rospy.Rate" and "line 7" not in row["problem"]
+
+
 @given(st.text(), st.text())
 def test_no_name_or_problem_controls_a_spreadsheet_whatever_separator_it_is_read_with(name, problem):
-    text = table([Result(name, (), (problem,))], PLAN, {name: problem})
+    text = table([StoredGrade(name, (), (problem,))], PLAN, {name: problem})
     assert len(read(text)) == 2
     for separator in ",;\t":
         for row in csv.reader(io.StringIO(text[1:]), delimiter=separator):

@@ -11,6 +11,7 @@ import pytest
 from robocop_grading.cli import unpacked_path
 from robocop_grading.errors import GradingError, SubmissionError
 from robocop_grading.files import archives, unpacking
+from robocop_hosting import tree
 
 SERVER = "robocop_goto_as.py"
 
@@ -139,14 +140,18 @@ def test_archive_beside_what_is_graded_is_named_and_not_unpacked(beside, tmp_pat
             "no package and no Python file in it, only a.txt, lab.rar; lab.rar was not unpacked",
         ),
         ({"lab.ipynb": b"", ".DS_Store": b"", ".ipynb_checkpoints/x.py": b""}, "only lab.ipynb"),
+        ({"a.zip": tree.POINTER}, "a.zip: this is a pointer of Git LFS, the file itself was not handed in"),
         ({"a.zip": b"no zip"}, "a.zip: neither a zip nor a tar archive"),
         ({"a.tar.gz": lambda: tarred(ONE, "gz")[:-20]}, "a.tar.gz: can't be unpacked: Compressed file ended"),
-        ({"a.zip": lambda: zipped({SERVER: bytes(10_001)})}, "a.zip: larger than 64 MB"),
-        (dict.fromkeys(["a.zip", "b.zip"], lambda: zipped({SERVER: bytes(6_000)})), "b.zip: larger than 64 MB"),
+        (
+            {"a.zip": lambda: zipped({SERVER: bytes(10_001)})},
+            "a.zip: larger than 0 MB; the largest file in it is a.zip/",
+        ),
+        (dict.fromkeys(["a.zip", "b.zip"], lambda: zipped({SERVER: bytes(6_000)})), "b.zip: larger than 0 MB"),
         ({"a.zip": lambda: encrypted({SERVER: b"pass"})}, "encrypted, password required"),
         ({"a.zip": lambda: zipped({f"{'d/' * 101}{SERVER}": b""})}, "a.zip: expected at most 100 nested folders"),
         ({"a.zip": lambda: long_list(ONE)}, "a.zip: expected at most 5000 files"),
-        ({"a.tgz": lambda: tarred({SERVER: bytes(10_001)}, "gz")}, "a.tgz: larger than 64 MB"),
+        ({"a.tgz": lambda: tarred({SERVER: bytes(10_001)}, "gz")}, "a.tgz: larger than 0 MB"),
         ({"a.tgz": lambda: tarred({"build/x": bytes(1024**2)}, "gz")}, "a.tgz: larger than 1 MB"),
         (
             {"a.tgz": lambda: tarred(dict.fromkeys(map(str, range(21)), b""), "gz")},
@@ -156,7 +161,7 @@ def test_archive_beside_what_is_graded_is_named_and_not_unpacked(beside, tmp_pat
 )
 def test_what_can_not_be_graded_states_what_was_found(files, problem, tmp_path, monkeypatch):
     monkeypatch.setattr(archives, "MAX_BYTES", 10_000)
-    monkeypatch.setattr(archives, "MAX_TAR_BYTES", 1024**2)
+    monkeypatch.setattr(archives, "MAX_PACKED", 1024**2)
     monkeypatch.setattr(archives, "MAX_ENTRIES", 20)
     with pytest.raises(SubmissionError) as error:
         unpacking.unpack(written(tmp_path / "eve", files))
@@ -180,7 +185,6 @@ def test_archives_one_in_another_are_unpacked_to_a_sensible_depth(tmp_path):
         {"link": link("link", "/tmp"), "link/evil.py": b""},
         {"link/evil.py": b"", "link": link("link", "/tmp")},
         {"pipe": link("pipe", "", tarfile.FIFOTYPE)},
-        {"hard": link("hard", "/etc/passwd", tarfile.LNKTYPE)},
     ],
 )
 def test_archive_that_would_write_or_read_elsewhere_is_refused(files, tmp_path):
@@ -189,6 +193,23 @@ def test_archive_that_would_write_or_read_elsewhere_is_refused(files, tmp_path):
     for name in ("eve.tar", "eve.zip"):
         with pytest.raises(SubmissionError):
             unpacking.unpack(tmp_path / name)
+
+
+def test_hard_link_out_of_an_archive_is_named_with_where_it_leads(tmp_path):
+    (tmp_path / "eve.tar").write_bytes(tarred({"hard": link("hard", "/etc/passwd", tarfile.LNKTYPE)}))
+    with pytest.raises(SubmissionError, match="hard: a hard link to /etc/passwd, which is not in it"):
+        unpacking.unpack(tmp_path / "eve.tar")
+
+
+@pytest.mark.parametrize("pack", [zipped, tarred, None])
+def test_large_video_beside_a_solution_is_left_out_and_named(pack, tmp_path):
+    files = {**ONE, "lab/my drive.MP4": bytes(3 * 1024**2), "lab/icon.png": b"small"}
+    top = written(tmp_path / "class", {"lab.zip": pack(files)} if pack else files)
+    found, prefix = unpacking.unpack(top), "lab.zip/" if pack else ""
+    kept = {path for path, entry in found.entries.items() if stat.S_ISREG(entry.mode)}
+    assert kept == {f"{prefix}lab/{SERVER}", f"{prefix}lab/icon.png"}
+    told = f"{prefix}lab/my drive.MP4 (3 MB) was left out: a video, a recording or an image is not graded"
+    assert found.notes == [told]
 
 
 @pytest.mark.parametrize("target", ["", "b\0c"])

@@ -1,40 +1,65 @@
 """The page of a report: the mistakes, then the failures, then what passed; each row leads to its plot."""
 
 import re
+import shlex
 from dataclasses import replace
+from html import unescape
+from pathlib import Path
 
 import pytest
-from grading_records import PLAN, RIGHT
+from grading_records import PLAN, RIGHT, changed
+from support import ROOT
 
 from robocop_grading.cli import as_text
 from robocop_grading.judge import judge
+from robocop_grading.record import Record
 from robocop_grading.report import write as report
 
+MOVING = replace(RIGHT, samples=tuple(replace(sample, v=0.2) for sample in RIGHT.samples))
+STUCK = changed(results=(), problem="the robot made no progress for 8 s, and the goal did not end")
 
-def test_report_begins_with_the_mistakes_and_links_each_row_to_its_plot(tmp_path):
-    moving = replace(RIGHT, samples=tuple(replace(sample, v=0.2) for sample in RIGHT.samples))
-    records = {"server": {"left": moving}}
-    grade = judge("<anna>", PLAN, records, {})
-    report.write(grade, PLAN, records, tmp_path)
-    html = (tmp_path / "report.html").read_text()
+
+def written(folder, *records, place=None):
+    """The report of a server that left these records."""
+    by_name = {"server": {record.name: record for record in records}}
+    grade = judge("<anna>", PLAN, by_name, {})
+    report.write(grade, PLAN, by_name, folder, place)
+    return grade, (folder / "report.html").read_text()
+
+
+def test_report_begins_with_each_mistake_beside_its_picture_and_folds_what_passed(tmp_path):
+    _, html = written(tmp_path, MOVING)
     assert "name='viewport'" in html and "<anna>" not in html
-    begin, failed, passed = (html.index(text) for text in ("What to fix", ">failed: ", "'>passed<"))
-    assert begin < html.index("The robot kept moving") < failed < passed
-    not_reached = html.index("not reached, ")
-    assert html.rindex("<details>", 0, not_reached) > passed, "folded"
-    targets = set(re.findall("href='#([^']+)'", html))
-    assert targets and all(f"id='{target}'" in html for target in targets)
-    rows = html[html.index("<table>") : html.index("</table>")]
-    assert rows.count("<a href='#") == rows.count("<tr><td>") > 5
+    mistake = html[html.index("<section") : html.index("</section>")]
+    assert "The robot kept moving" in mistake and mistake.count("<svg") == 1
+    folded = re.findall("<details><summary>(.*?)</summary>", html[html.index("</section>") :], re.DOTALL)
+    assert [re.sub("<[^>]*>", "", it).split(",")[0].split(" ", 1)[1] for it in folded][-1] == "passed"
+    assert html.count("<svg") == 6, "and the five plots of the scenario"
 
 
-@pytest.mark.parametrize("kept", [True, False])
-def test_report_names_a_bag_by_its_path_only_if_it_stays_there(tmp_path, kept):
+def test_what_follows_from_a_mistake_is_one_line_below_it(tmp_path):
+    grade, html = written(tmp_path, STUCK, replace(STUCK, name="odd_scan"))
+    (mistake,) = [it for it in grade.mistakes if "odd_scans" in {check.name for check in it.followers}]
+    lines = as_text(grade, {}).splitlines()
+    for text in (html, (tmp_path / "summary.md").read_text(), "\n".join(lines)):
+        assert text.count(mistake.consequences) == 1 and "This follows from" not in text
+    assert "failed because of it: " in mistake.consequences and "odd_scans" in mistake.consequences
+
+
+@pytest.mark.parametrize("place", [None, "/the class/anna"])
+def test_command_that_shows_a_scenario_works_from_anywhere(tmp_path, place):
     (tmp_path / "server-left.bag").write_bytes(b"")
-    records = {"server": {"left": RIGHT}}
-    report.write(judge("anna", PLAN, records, {}), PLAN, records, tmp_path, kept)
-    (command,) = re.findall(r"\./robocop replay ([^<]+)</code>", (tmp_path / "report.html").read_text())
-    assert command == (str(tmp_path / "server-left.bag") if kept else "server-left.bag")
+    _, html = written(tmp_path, MOVING, place=place and Path(place))
+    commands = [shlex.split(unescape(it)) for it in re.findall("<code>([^<]+)</code>", html)]
+    bag = str(Path(place or tmp_path, "server-left.bag"))
+    assert [command[:3] for command in commands] == [[str(Path(ROOT, "robocop")), "replay", bag]] * 2
+    assert [command[3:] for command in commands] == [["--start", "10.0"], []], "a second before the mistake"
+
+
+def test_scenario_in_which_nothing_happened_is_not_replayed(tmp_path):
+    (tmp_path / "server-start.bag").write_bytes(b"")
+    _, html = written(tmp_path, Record("start", "server", up=False))
+    assert "replay" not in html
 
 
 def test_folder_of_the_report_is_made_with_those_above_it(tmp_path):

@@ -34,11 +34,19 @@ def test_a_goal_goes_from_pending_to_its_end_and_is_forgotten_some_time_later(ta
     assert table.states() == [("a", GoalStatus.PENDING)]
     table.accept("a")
     assert table.states() == [("a", GoalStatus.ACTIVE)] and table.last["feedback"].status.goal_id.id == "a"
-    table.succeed("a")
+    table.finish("a", GoalStatus.SUCCEEDED)
     assert table.states() == [("a", GoalStatus.SUCCEEDED)] and table.last["result"].result.success
     table.now += KEPT + rospy.Duration(1)
     table.tell()
     assert table.states() == []
+
+
+@pytest.mark.parametrize("end", [GoalStatus.ABORTED, GoalStatus.PREEMPTED])
+def test_a_goal_that_ends_without_success_has_a_result_that_says_so(end, table):
+    table.add(goal("a"))
+    table.accept("a")
+    table.finish("a", end)
+    assert table.states() == [("a", end)] and not table.last["result"].result.success
 
 
 @pytest.mark.parametrize("accepted, end", [(True, GoalStatus.PREEMPTED), (False, GoalStatus.RECALLED)])

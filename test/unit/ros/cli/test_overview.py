@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from aro_robocop_goto_as.names import SERVER
+from aro_robocop_goto_as.names import COMMAND_VARIABLE, SERVER
 from aro_robocop_goto_as.ros.cli.overview import overview
 
 
@@ -37,6 +37,25 @@ def test_a_recording_says_where_it_is_shown_and_that_it_waits_for_a_browser():
 def test_goals_are_offered_only_with_a_server():
     assert "send a goal" in shown("aro_robocop_goto_as_node")
     assert "send a goal" not in shown("robocop_sim")
+
+
+@pytest.mark.parametrize(
+    "variables, command",
+    [
+        ({}, "./robocop"),
+        ({"ROS_MASTER_URI": "http://localhost:11311"}, "./robocop"),
+        ({"ROS_MASTER_URI": "http://lab:11411"}, "ROS_MASTER_URI=http://lab:11411 ./robocop"),
+        ({"ROS_MASTER_URI": "http://lab:11411", COMMAND_VARIABLE: "docker exec it"}, "docker exec it"),
+    ],
+)
+def test_commands_for_a_second_terminal_use_the_master_of_this_one(monkeypatch, variables, command):
+    for name in ("ROS_MASTER_URI", COMMAND_VARIABLE):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    rows = shown(SERVER)
+    assert rows["send a goal"].startswith(f"in a second terminal: {command} goto ")
+    assert rows["inspect"].startswith(f"in a second terminal: {command} shell, ")
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,7 @@ class System:
         monkeypatch.setattr(rviz_bridge.actionlib, "SimpleActionClient", lambda *_: self)
         monkeypatch.setattr(rviz_bridge.discovery, "is_up", lambda client: self.is_up)
         monkeypatch.setattr(rviz_bridge.discovery, "absence", lambda action: "absent")
-        monkeypatch.setattr(rviz_bridge.discovery, "advice", lambda action: "advice")
+        monkeypatch.setattr(rviz_bridge.discovery, "advice", lambda: "advice")
         transformer = SimpleNamespace(frame_of=lambda pose: "map", resolve=self.resolve)
         monkeypatch.setattr(rviz_bridge, "GoalTransformer", lambda *given: self.transforms.append(given) or transformer)
         self.bridge = rviz_bridge.Bridge(BridgeParams())

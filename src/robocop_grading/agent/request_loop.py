@@ -15,52 +15,52 @@ from .scheduler import allocate_lock, scheduler
 
 # Processor time [s] that a node may use before simulated time goes on without it
 STARTING_TIME = 20.0  # until all its threads wait for the first time; ROS and NumPy take 2 to 4
-REQUEST_TIME = 0.5  # at each later request of the grader
-LOOP_TIME = 0.002  # at each request after MAX_EXCEEDED in a row have used up theirs: the node is a loop without pauses
-AFTER_LOOP_TIME = 0.2  # at each request after such a loop has ended
-TURN = 0.05  # of one running thread, before other threads get their turns beside it
-MAX_EXCEEDED = 3  # requests in a row
+REQUEST_TIME = 0.5  # per request of the grader after that
+LOOP_TIME = 0.002  # per request, after MAX_OVERRUNS requests in a row used all of their time: a loop without pauses
+AFTER_LOOP_TIME = 0.2  # per request, after such a loop has ended
+TURN = 0.05  # of the thread whose turn it is, before it moves to the background
+MAX_OVERRUNS = 3  # requests in a row
 MANY = 100  # wake-ups of threads between two looks at the processor time
-LOOK = 0.005  # [s, wall] between two looks at the processor time
+MAX_POLL_PERIOD = 0.005  # [s, wall] between two looks at the processor time
 _recv_with_gil = ctypes.PyDLL(None).recv  # PyDLL does not release the interpreter's lock
 
 
-class Allowance:
-    """How much processor time a node gets until all of its threads wait."""
+class CpuBudget:
+    """The processor time [s] that a node may use at one request, until all of its threads wait."""
 
     def __init__(self) -> None:
         self.time, self._usual = STARTING_TIME, REQUEST_TIME  # [s]
-        self._exceeded = 0  # times in a row
+        self._overruns = 0  # times in a row
 
-    def renew(self) -> None:
-        """All threads wait."""
-        self.time, self._exceeded = self._usual, 0
+    def reset(self) -> None:
+        """All threads wait: the next request has the usual time."""
+        self.time, self._overruns = self._usual, 0
 
-    def exceed(self) -> None:
-        """Some thread still runs, and the allowed time is used up."""
-        self._exceeded += 1
-        if self._exceeded >= MAX_EXCEEDED:
+    def overrun(self) -> None:
+        """Some thread still runs, and the time is used up."""
+        self._overruns += 1
+        if self._overruns >= MAX_OVERRUNS:
             self.time, self._usual = LOOP_TIME, AFTER_LOOP_TIME
 
 
-class Channel:
-    """Answers the grader, in a thread of its own that the node does not see."""
+class RequestLoop:
+    """Answers the grader's requests, in a thread of its own that the node does not see."""
 
     def __init__(self, descriptor: int, clock_ns: int) -> None:
         self._descriptor = descriptor
         self._writing, self._turn = allocate_lock(), allocate_lock()
         self._turn.acquire()  # free while the grader waits for an answer
         os.register_at_fork(after_in_child=self._begin_anew)
-        self._allowance = Allowance()
+        self._budget = CpuBudget()
         self._busy = False  # the node still ran at the end of the last request
         self._programs = 0  # of ROS that the grader has been told of
         _, body = self._read()
         parameters, offered = pickle.loads(body)
-        self.grader = ros_graph.Grader(self._publish, self._call, offered)
+        self.grader = ros_graph.SimulatorProxy(self._publish, self._call, offered)
         self.grader.tell_of_child = lambda: self._write(wire.CHILD, b"")
         for name, value in parameters.items():
             self.grader.master.setParam("/robocop_sim", name, value)
-        self.clock = ros.Clock(clock_ns, lambda data: self.grader.feed(ros_graph.CLOCK, data))
+        self.clock = ros.RosClock(clock_ns, lambda data: self.grader.feed(ros_graph.CLOCK, data))
 
     def _begin_anew(self) -> None:
         """In a forked child, which may publish on the topics that it has inherited."""
@@ -126,10 +126,10 @@ class Channel:
     def _tell(self) -> None:
         """Tell the grader the node's topics, programs of ROS that it has started, and delays, if they have changed."""
         self.grader.note_delays()
-        if self.grader.has_news or len(stuck.others.of_ros) != self._programs:
-            self.grader.has_news, self._programs = False, len(stuck.others.of_ros)
+        if self.grader.has_news or len(stuck.children.ros_programs) != self._programs:
+            self.grader.has_news, self._programs = False, len(stuck.children.ros_programs)
             told = connections.topics(self.grader)
-            told.update(programs=sorted(stuck.others.of_ros), delays=sorted(self.grader.delays.items()))
+            told.update(programs=sorted(stuck.children.ros_programs), delays=sorted(self.grader.delays.items()))
             self._write(wire.TOPICS, json.dumps(told).encode())
 
     def _freeze(self) -> None:
@@ -168,27 +168,27 @@ class Channel:
         turn, turn_started = -1, 0.0
         for count in itertools.count(1):
             idle = scheduler.wait_until_idle(look)
-            stuck.others.look()
+            stuck.children.poll()
             asleep = None if idle else stuck.all_asleep()
-            is_over = idle or (asleep is not None and not scheduler.wait_for_none_of(asleep))
-            if is_over or scheduler.is_unawaited():
+            is_over = idle or (asleep is not None and not scheduler.move_to_background(asleep))
+            if is_over or scheduler.only_background_runs():
                 if files.wake():
                     if count % MANY:
                         continue
-                elif is_over and not stuck.others.work:
-                    self._allowance.renew()
+                elif is_over and not stuck.children.busy:
+                    self._budget.reset()
                     return True
                 if idle:
                     files.wait_for_more(look)
-            look = min(2.0 * look, LOOK, self._allowance.time / 2.0)
+            look = min(2.0 * look, MAX_POLL_PERIOD, self._budget.time / 2.0)
             used = stuck.processor_time()  # not before: mostly there is nothing to wait for, and the kernel takes long
             started = min(started, used)
             if turn != scheduler.turns:
                 turn, turn_started = scheduler.turns, used
             if used - turn_started > TURN and (files.wake() or scheduler.queue):
-                scheduler.wait_for_none_of(set(scheduler.running))
-            if used - started > self._allowance.time:
-                scheduler.wait_for_none_of(set(scheduler.running))
-                self._allowance.exceed()
+                scheduler.move_to_background(set(scheduler.running))
+            if used - started > self._budget.time:
+                scheduler.move_to_background(set(scheduler.running))
+                self._budget.overrun()
                 return False
         return False

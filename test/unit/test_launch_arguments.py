@@ -2,7 +2,8 @@
 
 import pytest
 
-from aro_robocop_goto_as.cli.launch_arguments import LaunchArguments, names
+from aro_robocop_goto_as.errors import ParameterError
+from aro_robocop_goto_as.launch_arguments import LaunchArguments, described
 
 FILE = """<launch>
   <!-- <arg name="commented" default=""/> -->
@@ -21,8 +22,11 @@ def file(tmp_path):
     return tmp_path / "my.launch"
 
 
-def test_arguments_are_those_with_a_default_wherever_the_lines_break(file):
-    assert names(file) == ["world", "web"]
+def test_arguments_are_those_with_a_default_wherever_the_lines_break(file, tmp_path):
+    assert described(file) == {"world": "", "web": ""}
+    after = tmp_path / "next.launch"
+    after.write_text('<launch><arg name="world" default="" doc="a name"/><arg name="x" default=""/></launch>')
+    assert described(file, after) == {"world": "a name", "web": ""}, "what is passed on is explained"
 
 
 def test_verbose_is_no_argument_of_the_file_and_remappings_of_ros_pass(file):
@@ -48,14 +52,14 @@ def test_the_last_value_counts(file):
     ],
 )
 def test_other_words_are_refused(file, word, message):
-    with pytest.raises(SystemExit) as refused:
+    with pytest.raises(ParameterError) as refused:
         LaunchArguments.parse(file, [word], "--with")
-    assert refused.value.code == f"robocop: {message}"
+    assert str(refused.value) == message
 
 
 def test_opposite_of_an_argument_is_suggested_with_its_value(tmp_path):
     (tmp_path / "my.launch").write_text('<launch><arg name="rviz" default="true"/></launch>')
-    with pytest.raises(SystemExit, match="did you mean rviz:=false[?]"):
+    with pytest.raises(ParameterError, match="did you mean rviz:=false[?]"):
         LaunchArguments.parse(tmp_path / "my.launch", ["headless:=true"])
 
 

@@ -1,4 +1,4 @@
-"""One end of a connection, in place of a socket: rospy reads from it and writes to it without a network."""
+"""A socket without a network, from which rospy reads and to which it writes."""
 
 import _thread
 import errno
@@ -10,7 +10,7 @@ from .scheduler import NEVER, Waiter, scheduler
 Header = Dict[str, str]  # of a connection, as on TCPROS
 
 
-class End:
+class MemorySocket:
     """One end of a connection, in place of a socket: holds the bytes that have arrived, and hands on what is sent."""
 
     def __init__(self, send: Callable[[bytes], object], sends_header: bool = True) -> None:
@@ -87,7 +87,7 @@ def encoded(header: Header) -> bytes:
     return bytes(encode_ros_handshake_header(header))
 
 
-def accept(end: End) -> None:
+def accept(end: MemorySocket) -> None:
     """Have the node's server handle a connection, in a thread of its own."""
     from rospy.impl import tcpros_base
 

@@ -3,14 +3,12 @@
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Sequence, Tuple
+from typing import Dict, List, Sequence, Tuple
 from xml.etree import ElementTree
 
-from ..suggestions import did_you_mean
-from .program import ROOT, refuse
+from .errors import ParameterError
+from .suggestions import did_you_mean
 
-# The files whose arguments a command takes.
-RUN, SIM, REPLAY = (ROOT / "launch" / f"{name}.launch" for name in ("robocop_goto_as", "robocop_sim", "replay"))
 TRUE = ("true", "True", "1")
 # What other simulators, and people, call an argument.
 OTHER_NAMES = {
@@ -26,11 +24,15 @@ OTHER_NAMES = {
 }
 
 
-def names(file: Path) -> List[str]:
-    """The arguments that a launch file lets its user choose: those with a default."""
-    return [
-        entry.attrib["name"] for entry in ElementTree.parse(file).getroot().findall("arg") if "default" in entry.attrib
-    ]
+def described(file: Path, *next_files: Path) -> Dict[str, str]:
+    """The arguments that a launch file lets its user choose, those with a default, and what each means.
+
+    An argument that is passed on to the next file is described there.
+    """
+    found = [entry for entry in ElementTree.parse(file).getroot().findall("arg") if "default" in entry.attrib]
+    passed_on = described(*next_files) if next_files else {}
+    texts = {str(entry.get("name")): str(entry.get("doc", "")) for entry in found}
+    return {name: text or passed_on.get(name, "") for name, text in texts.items()}
 
 
 @dataclass(frozen=True)
@@ -43,22 +45,24 @@ class LaunchArguments:
 
     @classmethod
     def parse(cls, file: Path, words: Sequence[str], *other_options: str) -> "LaunchArguments":
-        """Refuse, by ending the program, words that roslaunch would take for files or would silently ignore.
+        """Check words; ParameterError for one that roslaunch would take for a file or would silently ignore.
 
         `other_options`: those of the command that it handles itself, to be named where an option is unknown.
         """
-        known, options = names(file), ["--verbose", *other_options]
+        known, options = list(described(file)), ["--verbose", *other_options]
         given = [with_absolute_path(word) for word in words if word != "--verbose"]
         for word in given:
             name, separator, _ = word.partition(":=")
             if word.startswith("-"):
                 there_is = "there are" if other_options else "there is"
-                refuse(f"there is no option {word}; {there_is}: {' '.join(options)}{did_you_mean(word, options)}")
+                raise ParameterError(
+                    f"there is no option {word}; {there_is}: {' '.join(options)}{did_you_mean(word, options)}"
+                )
             if not separator:
-                refuse(f"expected NAME:=VALUE, such as world:=stage_1; got '{word}'")
+                raise ParameterError(f"expected NAME:=VALUE, such as world:=stage_1; got '{word}'")
             if not name.startswith("__") and name not in known:
                 there_are = f"there is no argument {name}; there are: {' '.join(known)}"
-                refuse(f"{there_are}{_meant(name, known)}")
+                raise ParameterError(f"{there_are}{_meant(name, known)}")
         return cls(file, tuple(given), "--verbose" in words)
 
     def value(self, name: str) -> str:

@@ -1,0 +1,87 @@
+"""The commands in the environments that people have, in pairs: each is right, or says in a sentence what is wrong."""
+
+import itertools
+
+import pytest
+from command import make_program, robocop
+
+from aro_robocop_goto_as.process.ports import free_port
+
+# What a terminal may have; an environment lacks what is None. Each with what run, goto and doctor say about it.
+ENVIRONMENTS = {
+    "another locale": ({"LC_ALL": "de_DE.UTF-8"}, ""),
+    "no HOME": ({"HOME": None}, ""),
+    "a HOME that can't be written": ({"HOME": "/proc"}, ""),
+    "pyenv": ({"PATH": "{pyenv}:/usr/bin:/bin", "PYTHONHOME": "/nowhere", "VIRTUAL_ENV": "/nowhere"}, ""),
+    "a display that does not answer": ({"DISPLAY": ":4711"}, ""),
+    "a namespace": ({"ROS_NAMESPACE": "red"}, "ROS_NAMESPACE=red is left out: "),
+    "a master of the user's own": ({"ROS_MASTER_URI": "http://127.0.0.1:{port}"}, ""),
+    "a real robot's master": ({"ROS_MASTER_URI": "http://192.0.2.7:9"}, "unset ROS_MASTER_URI"),
+    "no master's address": ({"ROS_MASTER_URI": "foo"}, "unset ROS_MASTER_URI"),
+    "an address in a robot's network": ({"ROS_IP": "192.0.2.20"}, "ROS_IP "),
+    "logs that can't be written": ({"ROS_HOME": "/proc/nowhere"}, "ROS_HOME=/proc/nowhere, can't be written"),
+}
+HARMLESS = ("another locale", "no HOME", "pyenv", "a display that does not answer", "a namespace")
+PAIRS = [
+    pair
+    for pair in itertools.combinations(ENVIRONMENTS, 2)
+    if not ENVIRONMENTS[pair[0]][0].keys() & ENVIRONMENTS[pair[1]][0].keys()
+]
+
+
+@pytest.fixture
+def calls(tmp_path, monkeypatch):
+    """A function that makes a call in several environments at once."""
+    make_program(tmp_path / "python3", "#!/bin/sh\nexit 77\n")
+    here = {"pyenv": str(tmp_path), "port": free_port()}
+    for name in ("ROS_HOME", "ROS_LOG_DIR", "ROS_NAMESPACE"):
+        monkeypatch.delenv(name, raising=False)
+
+    def call(names, *words, **settings):
+        for name, value in itertools.chain.from_iterable(ENVIRONMENTS[chosen][0].items() for chosen in names):
+            if value is None:
+                monkeypatch.delenv(name, raising=False)
+            else:
+                settings[name] = value.format(**here)
+        return robocop(*words, **settings)
+
+    return call
+
+
+def explained(text, names):
+    """Return whether a text says what is wrong with these environments; of two things that are wrong, one."""
+    wanted = [sentence for _, sentence in map(ENVIRONMENTS.get, names) if sentence and "is left out" not in sentence]
+    return not wanted or any(sentence in text for sentence in wanted)
+
+
+@pytest.mark.parametrize("pair", PAIRS, ids=" and ".join)
+def test_run_and_goto_start_the_lab_or_say_what_is_wrong_and_grade_always_starts(calls, pair):
+    faults = [name for name in pair if ENVIRONMENTS[name][1] and name != "a namespace"]
+    for words, started in (
+        (("run", "rviz:=false"), "robocop_goto_as.launch rviz:=false\n"),
+        (("goto", "0.3", "0"), "/robocop_goto.py 0.3 0\n"),
+        (("grade", "hand_in"), "/robocop_grade.py hand_in\n"),
+    ):
+        done = calls(pair, *words, ROBOCOP_DRY_RUN="1")
+        if faults and words[0] != "grade":
+            assert done.returncode == 1 and done.stdout == "" and explained(done.stderr, pair), done.stderr
+        else:
+            assert done.returncode == 0 and done.stdout.endswith(started), done.stderr
+        assert ("ROS_NAMESPACE=red is left out" in done.stderr) is ("a namespace" in pair)
+        assert "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", PAIRS, ids=" and ".join)
+def test_doctor_names_what_is_wrong(calls, pair):
+    faults = [name for name in pair if ENVIRONMENTS[name][1] and name != "a namespace"]
+    done = calls(pair, "doctor")
+    assert done.returncode == (1 if faults else 0), done.stdout
+    assert explained(done.stdout.partition("missing or wrong:")[2], pair) and "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+def test_a_goal_is_reached_in_all_harmless_environments_at_once(calls):
+    uri = f"http://localhost:{free_port()}"
+    done = calls(HARMLESS, "goto", "0.15", "0", "world:=empty", ROS_MASTER_URI=uri)
+    assert done.returncode == 0 and "SUCCEEDED: REACHED: " in done.stdout, done.stdout + done.stderr
