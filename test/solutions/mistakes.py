@@ -19,7 +19,7 @@ class Mistake(NamedTuple):
 
 MISTAKES: Dict[str, Mistake] = {
     "drives_first": Mistake(
-        "already_there turns_to_goal stops_at_obstacle",
+        "turns_to_goal already_there stops_at_obstacle",
         ((LOOP, f"        self.drive(0.15, 0.0)\n        rospy.sleep(1.0)\n{LOOP}"),),
     ),
     "never_ends": Mistake(
@@ -69,12 +69,12 @@ MISTAKES: Dict[str, Mistake] = {
         (("= wrap(math.atan2(dy, dx) - yaw)", "= math.atan2(dy, dx) - yaw"),),
     ),
     "scan_ignored": Mistake(
-        "stops_at_obstacle odd_scans failure_result next_goal",
+        "stops_at_obstacle odd_scans failure_result",
         (("self.min_dist_ahead < 0.3", "self.min_dist_ahead < 0.0"),),
         excludes="aborts_early",
     ),
     "aborts_early": Mistake(
-        "stops_at_obstacle",
+        "stops_at_obstacle only_ahead_counts odd_scans",
         (("self.min_dist_ahead < 0.3", "self.min_dist_ahead < 0.5"),),
         excludes="scan_ignored",
     ),
@@ -95,14 +95,14 @@ MISTAKES: Dict[str, Mistake] = {
         ((MESSAGE, ""),),
     ),
     "raises_at_second_goal": Mistake(
-        "goal_behind next_goal no_exception newer_goal",
+        "goal_behind newer_goal next_goal no_exception",
         (
             (f"{BEGIN}        self.cmd_pub", f"        self.goals = 0\n{BEGIN}        self.cmd_pub"),
             (LOOP, f"        self.goals += 1\n        if self.goals == 2:\n            raise ValueError\n{LOOP}"),
         ),
     ),
     "success_kept": Mistake(
-        "next_goal",
+        "goal_behind next_goal",
         (
             (f"{BEGIN}        self.cmd_pub", f"        self.done = False\n{BEGIN}        self.cmd_pub"),
             (

@@ -17,7 +17,7 @@ from ..record import (
     samples_between,
 )
 from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, logged
-from .verdict import Failed, Kind, without_figures
+from .verdict import Failed, Kind
 
 T = TypeVar("T", Feedback, Sample)
 MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and driving are right
@@ -30,11 +30,6 @@ ITERATION = 0.15  # [s] of a server's loop, with a tick of the recording
 def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
     """Return whether both failures are of the same kind."""
     return failure.kind is not None and failure.kind is earlier.kind
-
-
-def same_cause(_record: Record, failure: Failed, earlier: Failed) -> bool:
-    """Return whether both failures have the same cause, in which only figures differ."""
-    return without_figures(failure.cause) == without_figures(earlier.cause)
 
 
 def end_of(record: Record, failure: Failed) -> float:
@@ -170,7 +165,7 @@ class Row(NamedTuple):
 
     later: str  # names of checks; empty: every check
     kind: Optional[Kind]  # None: any kind, of a scenario that was recorded
-    earlier: str  # name of a check; empty: each check that comes earlier in the plan
+    earlier: str  # name of a check
     when: Optional[Callable[[Record, Failed, Failed], bool]] = None  # the later check's record, and both failures
 
 
@@ -182,7 +177,6 @@ CLICKS = "forwards_goal reports_status cancels_older waits_for_server goal_frame
 
 # A failure, or a check that is not reached, follows from the first row that applies to it.
 FOLLOWS = (
-    Row("", Kind.INCOMPLETE, "", alike),
     # The node does not start, raises an exception, or dies.
     Row("", Kind.NOT_REACHED, "action_server"),
     Row("no_exception stays_alive", None, "action_server", starting),
@@ -224,8 +218,6 @@ FOLLOWS = (
     Row(CLICKS, Kind.NO_REPORT, "bridge_alive"),
     Row("cancels_older waits_for_server goal_frame", None, "forwards_goal", alike),
     Row("goal_frame", None, "cancels_older", alike),
-    # One mistake is told once.
-    Row("", None, "", same_cause),
     # What a check needs to be reached.
     Row("feedback_position feedback_angle", Kind.NOT_REACHED, "feedback_rate"),
     Row("drives_straight", Kind.NOT_REACHED, "turns_to_goal"),
