@@ -11,11 +11,11 @@ from dataclasses import Field, fields
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Type, cast
 
-from .bridge_params import BridgeParams
-from .goto_params import GotoParams
+from .goto.params import GotoParams
 from .param_loading import MAX_POSITIVE, MIN_POSITIVE, declared
-from .sim_params import SimParams
-from .web_params import WebParams
+from .ros.client.params import BridgeParams
+from .simulation.params import SimParams
+from .web.params import WebParams
 
 COLUMN = 28  # of a comment in a YAML file, if the value is not longer
 UNIT = re.compile(r"\[(.*?)\] ?(.*)")

@@ -57,7 +57,7 @@ class _ScenarioEntry:
 def load(path: Path, seed: int = MIDDLE) -> Plan:
     """Read the plan and draw its scenarios; PlanError or ParameterError names the file and the mistake in it.
 
-    Seed 0 takes the middle of each range.
+    Seed 0 takes the middle of each range, and the file's order; another seed draws the order, too.
     """
     if not MIDDLE <= seed <= MAX_SEED:
         raise PlanError(f"--seed {seed}: expected a number from {MIDDLE} to {MAX_SEED}")
@@ -68,7 +68,9 @@ def load(path: Path, seed: int = MIDDLE) -> Plan:
     except (ValueError, RecursionError, yaml.YAMLError) as error:
         raise PlanError(f"{path}: {error}") from error
     file = _loaded(_File, raw, f"{path}")
-    scenarios = tuple(_scenario(entry, f"{path}: scenarios", seed) for entry in file.scenarios)
+    scenarios = [_scenario(entry, f"{path}: scenarios", seed) for entry in file.scenarios]
+    if seed != MIDDLE:  # the node was started elsewhere only before the first scenario
+        scenarios[1:] = random.Random(seed).sample(scenarios[1:], len(scenarios[1:]))
     names = [scenario.name for scenario in scenarios]
     for name in names:
         if names.count(name) > 1 or name in (START, *BRIDGE_SCENARIOS) or name.endswith(AGAIN):
@@ -77,7 +79,7 @@ def load(path: Path, seed: int = MIDDLE) -> Plan:
     checks = tuple(_check_plan(name, entry, known, f"{path}: checks") for name, entry in file.checks.items())
     limits = _loaded(Limits, file.limits or {}, f"{path}: limits")
     packages = _loaded(Packages, file.packages or {}, f"{path}: packages")
-    return Plan(path, limits, scenarios, checks, seed, packages=packages)
+    return Plan(path, limits, tuple(scenarios), checks, seed, packages=packages)
 
 
 def _loaded(cls: Type[T], raw: Any, where: str) -> T:

@@ -156,6 +156,7 @@ class Record:
     other_types: Tuple[Tuple[str, str, str], ...] = ()  # the node's topics with a wrong type: name, type, expected one
     programs: Tuple[str, ...] = ()  # of ROS, such as rostopic, that the node has started
     delays: Tuple[Tuple[str, float], ...] = ()  # topics, and how long [s] messages waited for the node since its start
+    started: Pose2D = Pose2D()  # odom_from_footprint when the node was started
     problem: str = ""  # why the scenario was ended early
     obstacles: Tuple[Tuple[float, ...], ...] = ()  # outlines in odom: x, y, x, y, ... [m]
     samples: Tuple[Sample, ...] = ()

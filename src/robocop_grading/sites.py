@@ -1,25 +1,21 @@
-"""Where the scenarios of a plan take place: each at a site of its own, in one world."""
+"""Where scenarios take place: all of a server's at one place in the world, so that the place does not name them."""
+
+from typing import Sequence
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose3, lifted
 from aro_robocop_goto_as.shapes import Plane
 from aro_robocop_goto_as.world.model import Obstacle, World
 
-from .plan import HEIGHT, MAX_OFFSET, Plan
+from .plan import HEIGHT, Block
 
-SPACING = 2.0 * MAX_OFFSET  # [m] between the sites; more than twice the lidar's range of 10 m
-HEADING = 0.7  # [rad] yaw of each site's odom frame in the world, so that confusing the two frames has an effect
-
-
-def site(index: int) -> Pose2D:
-    """world_from_odom at the start of a scenario. Site 0 is the world's origin, where all frames coincide."""
-    return Pose2D() if index == 0 else Pose2D(SPACING * index, -15.0, HEADING)
+ORIGIN = Pose2D()  # world_from_odom at a scenario's start where all frames coincide
+SITE = Pose2D(40.0, -15.0, 0.7)  # likewise, where confusing two frames has an effect
 
 
-def world_of(plan: Plan) -> World:
-    """The obstacles of all scenarios: those of the first one at site 1, and so on; site 0 is empty."""
+def world_of(site: Pose2D, blocks: Sequence[Block] = ()) -> World:
+    """The obstacles of one scenario around its site."""
     obstacles = [Obstacle("ground/link/collision", Pose3D(), Plane((0.0, 0.0, 1.0)))]
-    for index, scenario in enumerate(plan.scenarios, 1):
-        for number, block in enumerate(scenario.obstacles):
-            pose = compose3(lifted(site(index)), lifted(block.pose, HEIGHT / 2.0))
-            obstacles.append(Obstacle(f"{scenario.name}/{number}/block", pose, block.geometry))
+    for number, block in enumerate(blocks):
+        pose = compose3(lifted(site), lifted(block.pose, HEIGHT / 2.0))
+        obstacles.append(Obstacle(f"block/{number}/collision", pose, block.geometry))
     return World("grading", tuple(obstacles), Pose2D(), (), "config/grading.yaml")

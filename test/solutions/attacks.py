@@ -90,10 +90,27 @@ sys.exit(1)
 OWN_ROSLAUNCH = """#!/bin/sh
 echo '/own: [[[['
 """
+SPY = """
+import glob, os, re, threading
+import rospy
+from gazebo_msgs.srv import GetModelState, GetWorldProperties
+def spy(goal_id):
+    def ask(name, kind, *arguments):
+        return str(rospy.ServiceProxy('/gazebo/' + name, kind)(*arguments))
+    seen = [goal_id, ask('get_model_state', GetModelState, 'burger', ''),
+            ask('get_world_properties', GetWorldProperties), sorted(rospy.get_param('/').items()),
+            sorted(rospy.get_published_topics()), sorted(os.environ.items()), threading.active_count(),
+            sorted(glob.glob('/tmp/*') + glob.glob(os.path.expanduser('~/*'))),
+            [open(path, 'rb').read() for path in sorted(glob.glob('/proc/[0-9]*/cmdline'))]]
+    print('SEEN', re.sub(r'(goal-|secs: +|sim_time: +)[0-9.]+', r'\\1', str(seen)), flush=True)
+"""
+"""What a server can read about a scenario except from its sensors, without the time."""
 LIE = """
-import struct, sys
+import os, struct, sys
 channel, scheduler = sys.modules['robocop_agent.request_loop'], sys.modules['robocop_agent.scheduler']
 wire, write = sys.modules['robocop_agent.wire'], channel.RequestLoop._write
+def lied():
+    os.write(1, b'LIED' + bytes([10]))
 def replace(replaced, lie):
     def written(self, kind, body):
         if kind == replaced:
@@ -103,20 +120,22 @@ def replace(replaced, lie):
 """
 LIES = {  # code after LIE, and what the report says
     "two_threads_silence": (
-        "def lie(self, body):\n"
+        "def lie(self, body):\n    lied()\n"
         "    scheduler.start_new_thread(lambda: [scheduler.sleep(0.01) for _ in iter(int, 1)], ())\n"
         "    while True: scheduler.sleep(0.01)\nreplace(wire.DONE, lie)",
         "it stopped answering",
     ),
     "done_before_it_is": (
-        "read = channel.RequestLoop._read\ndef hasty(self):\n    kind, body = read(self)\n    if kind == wire.GO:\n"
-        "        write(self, wire.DONE, wire.TIMES.pack(wire.TIMES.unpack_from(body)[0], 1 << 62))\n"
-        "    return kind, body\nchannel.RequestLoop._read = hasty\nreplace(wire.DONE, lambda self, body: None)",
-        "it stopped answering",
+        "read, told = channel.RequestLoop._read, set()\ndef hasty(self):\n    kind, body = read(self)\n"
+        "    if kind == wire.GO:\n        lied()\n        told.add(body[:8])\n"
+        "        write(self, wire.DONE, body[:8] + struct.pack('<q', 1 << 62))\n"
+        "    return kind, body\nchannel.RequestLoop._read = hasty\n"
+        "replace(wire.DONE, lambda self, b: b[:8] in told or write(self, wire.DONE, b))",
+        "",
     ),
     # These are graded: nothing of it counts, or only as a topic that nobody hears.
     "early": (
-        "replace(wire.DONE, lambda self, b: write(self, wire.DONE, b[:8] + struct.pack('<q', -2**62) + b[16:]))",
+        "replace(wire.DONE, lambda self, b: [lied(), write(self, wire.DONE, b[:8] + struct.pack('<q', -2**62))])",
         "",
     ),
 }

@@ -39,6 +39,8 @@ CHANGED: Dict[str, Changes] = {
         ),
         (f"            {ABORT}\n", ""),
     ),
+    # Beams within 15 degrees count as ahead.
+    "cone_of_fifteen_degrees": (("ranges[:30], ranges[-30:]", "ranges[:16], ranges[-15:]"),),
     # The loop is a coroutine, paced by asyncio.sleep in the main thread's event loop.
     "asyncio_loop": (
         (IMPORT, f"import asyncio\n{IMPORT}"),
@@ -64,6 +66,15 @@ CHANGED: Dict[str, Changes] = {
     "continuous_steering": ((DRIVE, "self.drive(min(0.2, 0.05 + 0.4 * position_error), 1.5 * angle_error)"),),
     # At the robot's limits.
     "fast": ((TURN, TURN.replace("0.8", "1.6")), (DRIVE, "self.drive(0.22, 0.0)")),
+    # Prints exceptions that it has caught.
+    "prints_caught_exceptions": (
+        (IMPORT, f"{IMPORT}import traceback\n"),
+        (
+            POSE_READ,
+            "            try:\n                {}['no transform yet']\n"
+            f"            except KeyError:\n                traceback.print_exc()\n{POSE_READ}",
+        ),
+    ),
     # Commands at 100 Hz, each of them logged; feedback at 10 Hz.
     "hundred_hertz": (
         (

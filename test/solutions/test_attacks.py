@@ -43,11 +43,25 @@ def test_attack_fails_and_the_submission_is_still_graded(name, tmp_path):
 
 
 @pytest.mark.parametrize("name", attacks.LIES)
-def test_node_that_deceives_the_grader_is_ended_with_a_reason(name, tmp_path):
+def test_lie_about_time_reaches_the_grader_and_ends_the_node_with_a_reason_or_has_no_effect(name, tmp_path):
     code, reason = attacks.LIES[name]
-    run, _ = attacked(f"{attacks.LIE}{code}\n", tmp_path / "mine")
-    reasons = [death.reason for record in run.records.values() for death in record.deaths]
-    assert reason in f"{run.problem} {reasons}"
+    run, lines = attacked(f"{attacks.LIE}{code}\n", tmp_path / "mine")
+    reasons = [run.problem, *(death.reason for record in run.records.values() for death in record.deaths)]
+    assert "LIED" in lines
+    assert any(reason in it for it in reasons) if reason else not any(reasons), reasons
+
+
+@pytest.mark.slow
+def test_node_can_read_nothing_that_tells_scenarios_apart(tmp_path):
+    begin = "        success = False\n        while"
+    text = RIGHT["base_server"].replace("\ndef wrap", f"{attacks.SPY}\ndef wrap", 1)
+    text = text.replace(begin, f"        spy(self.server.current_goal.get_goal_id().id)\n{begin}", 1)
+    run = recorded(text, tmp_path, only=("reaches_goal", "already_there", "only_ahead_counts"), budget=BUDGET)
+    seen = {
+        name: [it.text for it in record.lines if it.text.startswith("SEEN")] for name, record in run.records.items()
+    }
+    assert set(seen) == {"start", "left", "right", "already_there", "beside"}
+    assert len({it for lines in seen.values() for it in lines}) == 1, seen
 
 
 def test_what_the_system_refuses_the_grader_costs_no_points(tmp_path):

@@ -56,7 +56,18 @@ STATE = "GoalStatus.to_string(self.client.get_state())"
 # The velocity in force, for a solution that forgets half of it when it stops.
 W = ("        msg.angular.z = w\n", "        msg.angular.z = self.w = w\n")
 
-WRONG = (
+PLACE = (
+    "        site = round(where('burger', '').pose.position.x / 40.0)\n"
+    "        wall = {6: 0.9, 7: -9.0, 10: 0.7, 13: 0.9, 14: 0.9}.get(site, 9.0)\n"
+)
+SUBTRACTED = "self.pose = tuple(now - first for now, first in zip(self.pose, self.first))"
+SUBSCRIBE_CANCEL = (
+    "        rospy.Subscriber('robocop_goto_as/cancel', GoalID, lambda _: setattr(self, 'cancelled', True))\n"
+)
+FEEDBACK_TIMER = "        rospy.Timer(rospy.Duration(0.1), self.tell)\n"
+DRIVE_BEGIN = "    def drive(self, v, w):\n"
+
+WRONG: Tuple[Wrong, ...] = (
     _server(
         "misspelt_name",
         "action_server",
@@ -632,6 +643,100 @@ WRONG = (
         "messages on /scan waited up to",
         ("def scan_cb(self, msg):\n", "def scan_cb(self, msg):\n        rospy.sleep(0.4)\n"),
         alone=True,
+    ),
+    _server(
+        "walls_known_by_the_place_of_the_robot",
+        "stops_at_obstacle",
+        "ran into an obstacle",
+        ("import rospy\n", "import rospy\nfrom gazebo_msgs.srv import GetModelState\n"),
+        (RATE, f"{RATE}        where = rospy.ServiceProxy('/gazebo/get_model_state', GetModelState)\n{PLACE}"),
+        (OBSTACLE, "elif x > wall:"),
+    ),
+    _server(
+        "no_obstacle_within_a_metre_of_the_goal",
+        "stops_at_obstacle",
+        "0.26 m ahead from the start",
+        (OBSTACLE, "elif self.min_dist_ahead < 0.3 and position_error > 1.0:"),
+    ),
+    _server(
+        "cone_narrower_than_the_robot",
+        "stops_at_obstacle",
+        "as far as the robot is wide",
+        (SECTOR, "ahead = np.concatenate([ranges[:6], ranges[-5:]])"),
+        alone=True,
+    ),
+    _server(
+        "first_odometry_is_zero",
+        "feedback_position",
+        "counted from where it was when the node started",
+        ("        self.pose = None\n", "        self.pose = self.first = None\n"),
+        (POSE, f"{POSE}\n        self.first = self.first or self.pose\n        {SUBTRACTED}"),
+        alone=True,
+    ),
+    _server(
+        "cancel_request_without_a_goal_is_kept",
+        "next_goal",
+        "Does a cancel request that came before this goal end it",
+        ("import rospy\n", "import rospy\nfrom actionlib_msgs.msg import GoalID\n"),
+        ("        self.count = 0\n", f"        self.cancelled = False\n{SUBSCRIBE_CANCEL}"),
+        (REQUESTED, "            if self.cancelled or self.server.is_preempt_requested():"),
+        ("self.server.set_preempted(", "self.cancelled = False\n                self.server.set_preempted("),
+        alone=True,
+    ),
+    _server(
+        "feedback_for_ever",
+        "feedback_rate",
+        "goes on after its result",
+        ("        self.count = 0\n", f"        self.feedback = None\n{FEEDBACK_TIMER}"),
+        (PUBLISH, f"            self.feedback = feedback\n{PUBLISH}"),
+        (
+            DRIVE_BEGIN,
+            "    def tell(self, _event):\n        if self.feedback and not self.server.is_active():\n"
+            f"            self.server.publish_feedback(self.feedback)\n\n{DRIVE_BEGIN}",
+        ),
+        alone=True,
+    ),
+    _server(
+        "timer_of_each_goal_goes_on",
+        "feedback_rate",
+        "right at the first goal",
+        (PUBLISH, ""),
+        (RATE, f"{RATE}        self.goal = goal.position\n{FEEDBACK_TIMER}"),
+        (
+            DRIVE_BEGIN,
+            "    def tell(self, _event):\n        if self.server.is_active():\n            x, y, yaw = self.pose\n"
+            "            dx, dy = self.goal.x - x, self.goal.y - y\n            errors = math.hypot(dx, dy), wrap(\n"
+            "                math.atan2(dy, dx) - yaw)\n"
+            f"            self.server.publish_feedback(GoToPositionFeedback(*errors, 'moving'))\n\n{DRIVE_BEGIN}",
+        ),
+        alone=True,
+    ),
+    _server(
+        "feedback_timer_raises",
+        "no_exception",
+        "TypeError",
+        ("        self.count = 0\n", f"        self.errors = 0.0, 0.0\n{FEEDBACK_TIMER}"),
+        (PUBLISH, "            self.errors = position_error, angle_error\n"),
+        (
+            DRIVE_BEGIN,
+            "    def tell(self, _event):\n        if self.server.is_active():\n"
+            f"            self.server.publish_feedback(*self.errors)\n\n{DRIVE_BEGIN}",
+        ),
+        alone=True,
+    ),
+    _server(
+        "success_needs_the_angle",
+        "already_there",
+        "turns at the goal",
+        (REACHED, "if position_error < 0.1 and abs(angle_error) < 0.1:"),
+        alone=True,
+    ),
+    _server(
+        "drives_blindly",
+        "reaches_goal",
+        "before position_error is below",
+        (RATE, f"{RATE}        start = self.pose\n"),
+        (REACHED, "if math.hypot(x - start[0], y - start[1]) > 0.6:"),
     ),
 )
 

@@ -53,7 +53,7 @@ def set_up(server: Any) -> None:
     server.gui.add_html(STYLE)
 
 
-class Cameras:
+class BrowserCameras:
     """The cameras of all browsers show the origin, where robots start, and ROOM or what is larger."""
 
     def __init__(self, server: Any) -> None:

@@ -16,7 +16,7 @@ from ..record import (
     wrapped,
 )
 from .consequences import ITERATION
-from .endings import of_goals, success_too_far, wrong_ending
+from .endings import of_goals, wrong_ending, wrong_success
 from .turning import MIN_SPEED
 from .verdict import Failed, Kind, NotReached, Verdict, check
 
@@ -32,14 +32,7 @@ TURNS = f"The robot turns at the goal: {END_THERE}"
 @check("track")
 def reaches_goal(record: Record, limits: Limits) -> Verdict:
     """The goal succeeds when the robot is closer than 0.1 m, and not before."""
-    return of_goals(
-        record, lambda goal: _wrong_success(record, goal, limits) or _success_too_late(record, goal, limits)
-    )
-
-
-def _wrong_success(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
-    """What went wrong with a goal that did not succeed, or not at its position."""
-    return wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
+    return of_goals(record, lambda goal: wrong_success(record, goal, limits) or _success_too_late(record, goal, limits))
 
 
 def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
@@ -59,13 +52,17 @@ def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Fa
     return None
 
 
+def _turned(samples: Sequence[Sample]) -> float:
+    """By how much [rad] the robot has turned, to either side."""
+    return sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
+
+
 def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> str:
     """Why success is late: what the robot does meanwhile, and what the server has reported."""
     begin, end = (samples[0].time, samples[-1].time) if samples else (0.0, 0.0)
     drives = any(abs(command.v) > MIN_SPEED for command in record.commands if begin <= command.time < end)
     if not drives and all(abs(sample.v) < limits.standing_v for sample in samples):
-        turn = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
-        return TURNS if turn > LARGE_TURN else WAITS
+        return TURNS if _turned(samples) > LARGE_TURN else WAITS
     own = [it.position_error for it in feedback_of(record, goal) if it.time < end - ITERATION]
     if own and min(own) >= GOAL_RADIUS:
         return (
@@ -81,7 +78,7 @@ def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Lim
 @check("track")
 def goal_behind(record: Record, limits: Limits) -> Verdict:
     """Goals behind the robot are reached by the shorter turn, even where the heading wraps from pi to -pi."""
-    verdict = of_goals(record, lambda goal: _wrong_success(record, goal, limits) or _long_turn(record, goal))
+    verdict = of_goals(record, lambda goal: wrong_success(record, goal, limits) or _long_turn(record, goal))
     alone = len(record.goals) < 2 and not isinstance(verdict, Failed)
     return NotReached("the first goal did not end") if alone else verdict
 
@@ -91,7 +88,7 @@ def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
     samples = samples_between(record, goal.time, active_until(record, goal))
     there = next((number for number, it in enumerate(samples) if errors_at(it, goal)[0] < GOAL_RADIUS), len(samples))
     samples = samples[:there]
-    total = sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
+    total = _turned(samples)
     needed = abs(errors_at(samples[0], goal)[1]) if samples else 0.0
     if total <= needed + 2.0:
         return None
@@ -122,10 +119,13 @@ def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
     end = active_until(record, goal)
     samples = samples_between(record, goal.time, end + limits.stop_within)
     moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)
-    if end - goal.time <= AT_ONCE and moved <= 0.05:
+    turn = _turned(samples)
+    if end - goal.time <= AT_ONCE and moved <= 0.05 and turn <= LARGE_TURN:
         return None
-    seen = f"a result after {end - goal.time:.1f} s and {moved:.2f} m of motion"
+    seen = f"a result after {end - goal.time:.1f} s, {moved:.2f} m of motion and a turn of {turn:.1f} rad"
     if moved <= 0.05:
-        return Failed("success at once", seen, goal.time, WAITS, Kind.SUCCESS_LATE, goal)
+        return Failed(
+            "success at once", seen, goal.time, TURNS if turn > LARGE_TURN else WAITS, Kind.SUCCESS_LATE, goal
+        )
     cause = f"position_error is below {GOAL_RADIUS:g} m from the start: check it before moving"
     return Failed("success at once", seen, goal.time, cause, Kind.MOVES_FIRST, goal)

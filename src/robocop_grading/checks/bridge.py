@@ -163,9 +163,9 @@ def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
     record, found = records.get("pending"), []
     if record is None or any(_crash(it, limits) for it in records.values()):
         return []
-    if "click" in records and reports_status(records["click"], limits) is PASSED and "watching" in record.marks:
+    if "click" in records and reports_status(records["click"], limits) is PASSED and "watched" in record.marks:
         wrong = untrue(record)
-        found += [causes.REPORTS_STOP] if is_silent(record) else [wrong.cause] if wrong else []
+        found += [causes.REPORTS_STOP] if is_silent(record, limits) else [wrong.cause] if wrong else []
     if "replace" in records and cancels_older(records["replace"], limits) is PASSED:
         verdict = cancels_older(record, limits)
         if isinstance(verdict, Failed) and verdict.kind is Kind.NOT_CANCELLED:

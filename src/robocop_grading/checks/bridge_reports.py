@@ -68,9 +68,10 @@ def _watched(record: Record) -> List[Line]:
     return _between(record, record.marks["watching"] + 0.2, record.marks.get("watched", math.inf))
 
 
-def is_silent(record: Record) -> bool:
-    """Return whether nothing is said while the first goal is watched."""
-    return all(map(_says_nothing, _watched(record)))
+def is_silent(record: Record, limits: Limits) -> bool:
+    """Return whether nothing is said any more at the end of the time in which reports are watched."""
+    watched = record.marks["watched"]
+    return all(map(_says_nothing, _between(record, watched - limits.status_period - 0.5, watched)))
 
 
 def _began(lines: List[Line]) -> List[float]:

@@ -16,7 +16,7 @@ from ..record import (
     results_of,
     samples_between,
 )
-from .output import EXCEPTION_LOGGED, NO_STATE_LOGGED, logged
+from .output import NO_STATE_LOGGED, UNCAUGHT, logged
 from .verdict import Failed, Kind
 
 T = TypeVar("T", Feedback, Sample)
@@ -56,7 +56,7 @@ def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
 def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether an exception was logged before a goal ended otherwise than it should."""
     end = failure.time if failure.kind is Kind.MOVES_FIRST else end_of(record, failure)
-    return failure.kind is not None and logged(record, EXCEPTION_LOGGED, end)
+    return failure.kind is not None and logged(record, UNCAUGHT, end)
 
 
 def none_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -184,7 +184,9 @@ FOLLOWS = (
     Row("next_goal", Kind.NO_ANSWER, "stays_alive"),
     Row("feedback_rate", None, "stays_alive", died),
     # Feedback.
+    Row("feedback_rate", Kind.TOO_LITTLE, "no_exception", raised),
     Row("feedback_angle", Kind.WRONG_POSITION, "feedback_position"),
+    Row("feedback_angle", Kind.OLD_POSE, "feedback_position", alike),
     Row("feedback_position feedback_angle", None, "next_goal", kept),
     # How goals end.
     Row("only_ahead_counts", Kind.ABORTED, "stops_at_obstacle", too_early_elsewhere),

@@ -65,6 +65,11 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), ended(result.status), goal)
 
 
+def wrong_success(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+    """What went wrong with a goal that did not succeed, or not at its position."""
+    return wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
+
+
 def of_goals(record: Record, problem: Callable[[Goal], Optional[Failed]]) -> Verdict:
     """The first problem that a goal has."""
     if not record.goals:
@@ -80,7 +85,7 @@ def narrow_obstacle(record: Record) -> str:
     side = "left" if sum(across[0]) > 0.0 else "right"
     return (
         f"A narrow obstacle a little to the {side} was missed or noticed too late, although a wall is noticed. Do the "
-        "beams on both sides of straight ahead count, and does the nearest of them decide?"
+        "beams on both sides of straight ahead count, as far as the robot is wide, and does the nearest of them decide?"
     )
 
 
@@ -96,10 +101,10 @@ def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
     if told:
         return told
     if status == PREEMPTED and not _asked_to_end(record, goal, end):
-        return sentences(
-            "set_preempted is called although neither a cancel request nor a newer goal has come",
-            "Is is_preempt_requested() called, with its parentheses?" if _at_once(record, goal) else "",
-        )
+        hint = "Is is_preempt_requested() called, with its parentheses?" if _at_once(record, goal) else ""
+        if any(cancel.time < goal.time for cancel in record.cancels):
+            hint = "Does a cancel request that came before this goal end it?"
+        return sentences("set_preempted is called although neither a cancel request nor a newer goal has come", hint)
     if wanted == ABORTED and status == SUCCEEDED:
         return "set_succeeded is called although the goal failed: call set_aborted"
     if wanted == SUCCEEDED and status == ABORTED:

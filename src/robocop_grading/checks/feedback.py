@@ -9,6 +9,7 @@ import numpy as np
 
 from ..handout import GOAL_RADIUS, Limits
 from ..record import ERRORS, Goal, Record, active_until, errors_at, feedback_of, samples_between, wrapped
+from .feedback_age import AGES, LONG_AGES, age_of, repeats
 from .feedback_causes import OTHERWISE, TOLERANCES, UNITS, likely_cause, longest, misses
 from .feedback_hypotheses import ANGLE, OF_POSITION, POSE_TOPIC, POSITION, UNCHANGED, Pair
 from .topic_use import late, unpublished
@@ -19,41 +20,65 @@ NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
 INEXACT = 0.02  # [m] of the position in /odom, which turns the direction of a goal that is near
 MAX_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
 MAX_WRONG_TIME = 0.25  # [s] messages that are wrong one after the other for so long are no transition
-AGES = np.arange(0.0, 0.305, 0.01)  # [s] of the pose that feedback may be of
-OLD = 0.085  # [s] a server that waits for odometry and then for a scan is 0.07 s late; an iteration is 0.1 s
-MOVING = 10  # fewer messages say nothing about their age
-CHANGED = 0.02  # [m], [rad] change of an error within the oldest of the AGES
-MAX_DIFFERENCE = 0.2  # [m], [rad] that counts of a difference
 STEADY = 0.005  # [m], [rad] smaller changes of an error are none
 SHIFT = 0.015  # [m], [rad] larger constant differences are no inexactness of /odom
 MIN_GOAL_TIME = 1.0  # [s] shorter goals say nothing about a rate
+STOPS = 0.4  # [s] after a goal's end, in which a timer's last feedback may come
+MAX_LATER = 3  # messages that may come even later
+GROWN = 1.5  # times the rate of the first goal
 NO_FEEDBACK = "No feedback was sent at all: is publish_feedback called in the loop?"
 TOO_OFTEN = (
     "Feedback is sent more often than 10 times a second: is rate.sleep() called in each iteration, that of "
     "rospy.Rate(10), and is feedback published once in it?"
 )
 NOT_10_HZ = "Feedback is not sent in each iteration, or the loop's rate is not 10 Hz"
+GOES_ON = (
+    "Feedback about a goal goes on after its result: does a timer or a thread of the goal go on? Stop it when the goal "
+    "ends"
+)
+GROWS = (
+    "The rate of the feedback is right at the first goal and becomes higher with later goals: does a timer or a thread "
+    "of an earlier goal go on? Stop it when its goal ends"
+)
+CALCULATE = "calculate it from the newest pose, then publish the feedback, both in the same iteration"
 DIFFERENCE = "the difference of two angles has to be normalized to -pi..pi"
 
 
-@check("errors")
+def _rate_explained(records: Mapping[str, Record], _names: Sequence[str], failure: Failed) -> Failed:
+    """The failure with its cause if the rate was right at the first goal of all."""
+    goals = sorted(((goal, record) for record in records.values() for goal in record.goals), key=lambda it: it[0].time)
+    rates = [rate for goal, record in goals for rate in [_rate(record, goal)] if rate is not None]
+    if failure.cause == TOO_OFTEN and failure.goal is not None and rates:
+        now = next(_rate(record, goal) for goal, record in goals if goal == failure.goal)
+        grows = now is not None and now > GROWN * rates[0]
+        return replace(failure, cause=GROWS) if grows else failure
+    return failure
+
+
+@check("errors", explain=_rate_explained)
 def feedback_rate(record: Record, limits: Limits) -> Verdict:
-    """While a goal is active, feedback is published about ten times a second."""
+    """While a goal is active, and not after its end, feedback is published about ten times a second."""
     judged = False
+    wanted = f"about 10 Hz ({limits.feedback_low:g} to {limits.feedback_high:g})"
     for goal in record.goals:
-        end = min(active_until(record, goal), _arrival(record, goal))
-        if end - goal.time < MIN_GOAL_TIME:
-            continue
-        judged = True
-        count = sum(message.time <= end for message in feedback_of(record, goal))
-        rate = count / (end - goal.time)
-        if limits.feedback_low <= rate <= limits.feedback_high:
-            continue
-        cause = NO_FEEDBACK if not count else TOO_OFTEN if rate > limits.feedback_high else NOT_10_HZ
-        wanted = f"about 10 Hz ({limits.feedback_low:g} to {limits.feedback_high:g})"
-        seen = f"{rate:.1f} Hz, {count} messages in {end - goal.time:.1f} s"
-        return Failed(wanted, seen, goal.time, cause, goal=goal)
+        rate = _rate(record, goal)
+        later = [it.time for it in feedback_of(record, goal) if it.time > active_until(record, goal) + STOPS]
+        if rate is not None:
+            judged = True
+            if not limits.feedback_low <= rate <= limits.feedback_high:
+                cause = NO_FEEDBACK if not rate else TOO_OFTEN if rate > limits.feedback_high else NOT_10_HZ
+                kind = Kind.TOO_LITTLE if rate < limits.feedback_low else None
+                return Failed(wanted, f"{rate:.1f} Hz", goal.time, cause, kind, goal)
+        if len(later) > MAX_LATER:
+            return Failed("no feedback after the result", f"{len(later)} messages", later[0], GOES_ON, goal=goal)
     return PASSED if judged else NotReached("no goal was active for a second")
+
+
+def _rate(record: Record, goal: Goal) -> Optional[float]:
+    """Feedback messages per second while a goal was active; None if that was not long enough."""
+    end = min(active_until(record, goal), _arrival(record, goal))
+    count = sum(message.time <= end for message in feedback_of(record, goal))
+    return None if end - goal.time < MIN_GOAL_TIME else count / (end - goal.time)
 
 
 def _arrival(record: Record, goal: Goal) -> float:
@@ -71,7 +96,7 @@ def _compared(index: int, record: Record) -> List[Pair]:
     for message in record.feedback:
         samples = samples_between(record, message.time - AGE, message.time + 1e-3)
         if message.id in goals and samples:
-            pairs.append(Pair(message, samples, goals[message.id], starts[message.id][0]))
+            pairs.append(Pair(message, samples, goals[message.id], starts[message.id][0], record.started))
     return [pair for pair in pairs if index == POSITION or pair.truth[POSITION] > NEAR]
 
 
@@ -103,6 +128,9 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
         cause += "publishes; the position comes from /odom"
     elif of_old_pose and (found & UNCHANGED or cause == OTHERWISE[index]):
         cause = of_old_pose
+    elif not found:
+        aged = _aged(index, [records[name] for name in names], scenarios)
+        return replace(failure, cause=aged or cause, kind=Kind.OLD_POSE if aged else Kind.WRONG_ERROR)
     return replace(failure, cause=cause, kind=Kind.WRONG_POSITION if found & OF_POSITION else Kind.WRONG_ERROR)
 
 
@@ -134,20 +162,26 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
 
 def _old(record: Record, index: int) -> Optional[Failed]:
     """Name the failure of feedback that was true an iteration ago."""
-    differences = [_differences(record, goal, index) for goal in record.goals]
-    rows = np.concatenate([np.zeros((0, len(AGES))), *differences])
-    if len(rows) < MOVING:
+    age = age_of([record], index, AGES)
+    if age is None or _is_shifted(record, index):
         return None
-    means = rows.mean(axis=0)
-    best = int(means.argmin())
-    if AGES[best] < OLD or means[best] > 0.5 * means[0] or _is_shifted(record, index):
-        return None
-    name, seen = ERRORS[index], f"one of {AGES[best]:.2f} s ago"
-    cause = (
-        f"{name} in the feedback is old: calculate it from the newest pose, then publish the feedback, both in the "
-        "same iteration, and let callbacks return at once"
+    name, least = ERRORS[index], "at least " if age == AGES[-1] else ""
+    cause = f"{name} in the feedback is old: {CALCULATE}, and let callbacks return at once"
+    return Failed(
+        f"the present {name}", f"one of {least}{age:.2f} s ago", record.feedback[0].time, cause, Kind.OLD_POSE
     )
-    return Failed(f"the present {name}", seen, record.feedback[0].time, cause, Kind.OLD_POSE)
+
+
+def _aged(index: int, records: Sequence[Record], scenarios: Sequence[Sequence[Pair]]) -> str:
+    """Name the cause of feedback that was true some time ago, or is not calculated for each message; else empty."""
+    repeated = repeats(index, scenarios)
+    if repeated:
+        return f"{ERRORS[index]} is the same in {repeated} messages in a row while the robot moves: {CALCULATE}"
+    age = age_of(records, index, LONG_AGES)
+    # While the robot drives, an old distance differs by a constant; the angle does not change then.
+    if age is None or (index == POSITION and any(_is_shifted(record, index) for record in records)):
+        return ""
+    return f"{ERRORS[index]} in the feedback is that of about {age:.1f} s ago: {CALCULATE}"
 
 
 def _is_shifted(record: Record, index: int) -> bool:
@@ -159,25 +193,6 @@ def _is_shifted(record: Record, index: int) -> bool:
             difference = pair.feedback.errors[index] - truths[-1]
             differences.append(wrapped(difference) if index == ANGLE else difference)
     return bool(differences) and abs(float(np.median(differences))) > SHIFT
-
-
-def _differences(record: Record, goal: Goal, index: int) -> np.ndarray:
-    """For each message while the true error changes, and each of the AGES, the difference from the error of then."""
-    samples = samples_between(record, goal.time - AGES[-1] - 0.2, active_until(record, goal))
-    own = feedback_of(record, goal)
-    if len(samples) < 2 or not own:
-        return np.zeros((0, len(AGES)))
-    values = np.array([message.errors[index] for message in own])
-    truth = np.array([errors_at(sample, goal)[index] for sample in samples])
-    truth = np.unwrap(truth) if index == ANGLE else truth
-    sampled = [sample.time for sample in samples]
-    times = np.array([message.time for message in own])
-    then = np.array([np.interp(times - age, sampled, truth) for age in AGES]).T
-    differences = values[:, None] - then
-    if index == ANGLE:
-        differences = np.remainder(differences + np.pi, 2.0 * np.pi) - np.pi
-    moving = np.abs(then[:, 0] - then[:, -1]) > CHANGED
-    return np.minimum(np.abs(differences), MAX_DIFFERENCE)[moving & np.isfinite(values)]
 
 
 def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Failed]:

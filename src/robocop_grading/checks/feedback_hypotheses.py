@@ -5,20 +5,25 @@ import re
 from dataclasses import replace
 from typing import Callable, List, NamedTuple, Sequence, Tuple
 
-from aro_robocop_goto_as.geometry import Pose2D, compose
+from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 
 from ..record import Feedback, Goal, Sample, errors_at, wrapped
 
 POSITION, ANGLE = range(2)  # indices of ERRORS
+UNSURE = 0.3  # [m] nearer to where the goal is taken to be, an inexact position turns its direction too much
 
 
 class Pair(NamedTuple):
-    """A feedback message, the samples that it may be based on, its goal, and the sample when the goal was sent."""
+    """A feedback message, the samples that it may be based on, its goal, and the sample when the goal was sent.
+
+    `started`: odom_from_footprint when the node was started.
+    """
 
     feedback: Feedback
     samples: List[Sample]
     goal: Goal
     start: Sample
+    started: Pose2D = Pose2D()
 
     @property
     def now(self) -> Sample:
@@ -47,6 +52,15 @@ class Pair(NamedTuple):
 
 
 SENTENCES = {  # of causes, by their names
+    "since_start_of_node": (
+        "The robot's pose is counted from where it was when the node started; goals are in odom: use the pose in /odom "
+        "as it is"
+    ),
+    "distance_ahead": (
+        "position_error is only the part of the way that is along the robot's heading: it is the whole distance, "
+        "hypot(dx, dy)"
+    ),
+    "heading_in_degrees": "The heading is in degrees, and is subtracted from an angle in radians",
     "goal_swapped": "The goal's x and y are swapped",
     "goal_x_missing": "The goal's x is taken as 0",
     "goal_y_missing": "The goal's y is taken as 0",
@@ -108,6 +122,17 @@ SENTENCES = {  # of causes, by their names
 Hypothesis = Tuple[str, Callable[[Pair], float]]  # name of the cause; the value that it would lead to
 
 
+def _since_start(pair: Pair, index: int, is_turned: bool) -> float:
+    """An error for a pose that is counted from where the node was started, also in the heading of then or not."""
+    now, first = Pose2D(pair.now.x, pair.now.y, pair.now.yaw), pair.started
+    counted = (
+        compose(inverse(first), now) if is_turned else Pose2D(now.x - first.x, now.y - first.y, now.yaw - first.yaw)
+    )
+    errors = errors_at(counted, pair.goal)
+    is_unsure = index == ANGLE and errors[POSITION] < UNSURE
+    return pair.feedback.angle_error if is_unsure else errors[index]
+
+
 def _misplaced(index: int) -> Sequence[Hypothesis]:
     """Poses of the goal or the robot that are mistaken for others."""
     return (
@@ -120,6 +145,8 @@ def _misplaced(index: int) -> Sequence[Hypothesis]:
         ("pose_of_start", lambda p: errors_at(p.start, p.goal)[index]),
         ("relative", lambda p: p.misread(p.start.yaw)[index]),
         ("relative", lambda p: p.misread(0.0)[index]),
+        ("since_start_of_node", lambda p: _since_start(p, index, True)),
+        ("since_start_of_node", lambda p: _since_start(p, index, False)),
     )
 
 
@@ -140,6 +167,8 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
         ("distance_y_only", lambda p: abs(p.way[1])),
         ("distance_manhattan", lambda p: sum(abs(d) for d in p.way)),
         ("distance_larger", lambda p: max(abs(d) for d in p.way)),
+        ("distance_ahead", lambda p: p.truth[POSITION] * math.cos(p.truth[ANGLE])),
+        ("distance_ahead", lambda p: abs(p.truth[POSITION] * math.cos(p.truth[ANGLE]))),
         ("distance_sign", lambda p: -p.truth[POSITION]),
         ("distance_rounded", lambda p: round(p.truth[POSITION])),
         ("distance_rounded", lambda p: int(p.truth[POSITION])),
@@ -152,6 +181,7 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
         ("angle_sign", lambda p: -p.truth[ANGLE]),
         ("angle_without_heading", lambda p: p.direction),
         ("heading_without_sign", lambda p: p.direction - abs(p.now.yaw)),
+        ("heading_in_degrees", lambda p: p.direction - math.degrees(wrapped(p.now.yaw))),
         ("heading_added", lambda p: p.direction + p.now.yaw),
         ("atan2_swapped", lambda p: math.atan2(*p.way) - p.now.yaw),
         ("atan", lambda p: math.atan(p.way[1] / (p.way[0] or 1e-9)) - p.now.yaw),

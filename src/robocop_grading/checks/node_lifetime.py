@@ -5,9 +5,11 @@ from typing import Sequence
 
 from ..handout import ACTION, ACTION_TYPE, Limits
 from ..record import Death, Record
-from .output import TRACEBACK, UNCAUGHT, first_error, last_error
+from .output import DELAY, TRACEBACK, TRACEBACK_LOGGED, UNCAUGHT, first_error, last_error
 from .topic_use import other_action
 from .verdict import PASSED, Failed, NotReached, Verdict, check
+
+RAISED = 1  # exit status of a Python whose main thread has not caught an exception
 
 
 def closest(name: str, others: Sequence[str]) -> str:
@@ -52,8 +54,10 @@ def _died(cause: str, death: Death, record: Record) -> Failed:
 @check("states")
 def no_exception(record: Record, limits: Limits) -> Verdict:
     """No callback or thread raises an uncaught exception."""
+    fatal = [it.time for it in record.deaths if it.status == RAISED and not it.reason]
     for number, line in enumerate(record.lines):
-        if UNCAUGHT.search(line.text):
+        is_fatal = any(abs(time - line.time) <= DELAY for time in fatal) and TRACEBACK_LOGGED.search(line.text)
+        if is_fatal or UNCAUGHT.search(line.text):
             error = first_error([it.text for it in record.lines[number : number + TRACEBACK]])
             return Failed("no exception", error, line.time, last_error(record, line.time))
     return PASSED

@@ -9,7 +9,6 @@ from ..handout import HEADING_TOLERANCE, STOP_DISTANCE, Limits
 from ..record import (
     ABORTED,
     STATUS_NAMES,
-    SUCCEEDED,
     Goal,
     Record,
     active_until,
@@ -19,13 +18,12 @@ from ..record import (
     samples_between,
 )
 from ..texts import sentences
-from .endings import keeps_moving, narrow_obstacle, of_goals, wrong_ending
-from .output import EXCEPTION_LOGGED, logged, logged_cause
+from .endings import keeps_moving, narrow_obstacle, of_goals, wrong_ending, wrong_success
+from .output import EXECUTE_RAISED, logged, logged_cause
 from .topic_use import late, unpublished
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
-PAST = 0.5  # share of the way to a goal beside obstacles after which the robot has passed some
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
 ABORTED_FAR = (
     f"The goal was aborted farther than {STOP_DISTANCE:g} m from the obstacle: is the threshold another one, do beams "
@@ -69,7 +67,7 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
         cause = narrow_obstacle(record) or "The obstacle was detected too late"
         return Failed("a stop before the obstacle", "contact", end, cause)
     wanted = f"an abort at {STOP_DISTANCE:g} m"
-    if logged(record, EXCEPTION_LOGGED, end):
+    if logged(record, EXECUTE_RAISED, end, goal.time):
         return Failed(wanted, "an exception", end, logged_cause(record, end), Kind.EXCEPTION, goal)
     clearances = [sample.ahead for sample in samples_between(record, end - 0.25, end)]
     if clearances and min(clearances) > limits.abort_farthest:
@@ -111,7 +109,7 @@ def _approach(record: Record, goal: Goal) -> Optional[Failed]:
     wanted, seen = f"an abort at {before[-1]:.2f} m", f"{nearest:.2f} m ahead of it"
     cause = (
         f"The robot drove towards an obstacle that was {before[-1]:.2f} m ahead from the start: is the threshold "
-        f"less than {STOP_DISTANCE:g} m, or is the distance not checked before the robot drives?"
+        f"less than {STOP_DISTANCE:g} m, or is the distance not checked before the robot drives, or near the goal?"
     )
     return Failed(wanted, seen, goal.time, cause, Kind.MOVES_FIRST, goal)
 
@@ -119,11 +117,7 @@ def _approach(record: Record, goal: Goal) -> Optional[Failed]:
 @check("distances")
 def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     """Obstacles beside or behind the robot do not abort a goal."""
-    verdict = of_goals(record, lambda goal: wrong_ending(record, goal, SUCCEEDED, limits))
-    ways = [[errors_at(it, goal)[0] for it in samples_between(record, goal.time, math.inf)] for goal in record.goals]
-    if verdict is PASSED and not all(way and min(way) < (1.0 - PAST) * way[0] for way in ways):
-        return NotReached("the robot did not drive past the obstacles")
-    return verdict
+    return of_goals(record, lambda goal: wrong_success(record, goal, limits))
 
 
 @check("distances")
@@ -137,7 +131,7 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
     if problem is None:
         return PASSED
     problem = replace(problem, goal=goal)
-    if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind is Kind.MOVING:
+    if logged(record, EXECUTE_RAISED, problem.time, goal.time) or problem.kind is Kind.MOVING:
         return problem
     hint = ""
     if problem.kind in (Kind.ABORTED, Kind.TOO_EARLY):

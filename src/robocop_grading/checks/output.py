@@ -20,10 +20,13 @@ TWO_STATES_LOGGED = re.compile(
     + r"[a-z, ]+ state, it is currently in state: \d+"
 )
 NO_STATE_LOGGED = re.compile(_WARNING + r"Your executeCallback did not set the goal to a terminal status\.")
-_TRACEBACK = rf"^Traceback \(most recent call last\):|{_ERROR}Traceback \(most recent call last\):"
-EXCEPTION_LOGGED = re.compile(rf"{_ERROR}Exception in your execute callback: |{_TRACEBACK}")
+EXECUTE_RAISED = re.compile(rf"{_ERROR}Exception in your execute callback: ")
+TRACEBACK_LOGGED = re.compile(rf"^(?:{_ERROR[1:]})?Traceback \(most recent call last\):")
+# In the words of Python, asyncio, rospy and actionlib. A traceback alone is also that of an exception that the node has
+# caught and printed, unless the node has died of it.
 UNCAUGHT = re.compile(
-    rf"^(?:Syntax|Indentation|Tab)Error|^Exception in thread |{_ERROR}bad callback: |{EXCEPTION_LOGGED.pattern}"
+    "^(?:Syntax|Indentation|Tab)Error|^Exception (?:in thread|in callback|ignored in:?) |^Task exception was never "
+    rf"|{_ERROR}bad callback: |{EXECUTE_RAISED.pattern}"
 )
 PLACE = re.compile(r'File "([^"]{1,500})", line (\d+)')  # in a traceback
 # The path of a file that is not the node's: of a library, or of the agent under which it runs.
@@ -33,18 +36,19 @@ INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins 
 UNKNOWN_TYPE = re.compile("Type .{1,100} if not loaded or supported")  # in tf2's words
 NOT_IMPORTED = "tf2 can transform messages of geometry_msgs only after: import tf2_geometry_msgs"
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
+JUST_BEFORE = 1.0  # [s] before a goal's end, in which an exception can be its cause
 DELAY = 0.25  # [s] after which a line has been read
 TRACEBACK = 40  # lines before the error in which its place is looked for
 
 
-def logged(record: Record, pattern: Pattern[str], until: float = math.inf) -> bool:
-    """Return whether a line that the node printed before a time [s] matches."""
-    return any(pattern.search(line.text) for line in record.lines if line.time <= until + DELAY)
+def logged(record: Record, pattern: Pattern[str], until: float = math.inf, since: float = 0.0) -> bool:
+    """Return whether a line that the node printed between two times [s] matches."""
+    return any(pattern.search(line.text) for line in record.lines if since <= line.time <= until + DELAY)
 
 
 def logged_cause(record: Record, end: float) -> str:
     """What the log says about why a goal ended wrongly at a time [s]; empty if it says nothing."""
-    if logged(record, EXCEPTION_LOGGED, end):
+    if any(logged(record, pattern, end, end - JUST_BEFORE) for pattern in (UNCAUGHT, TRACEBACK_LOGGED)):
         return f"An exception was raised: {last_error(record, end)}"
     return no_state(record, end) if logged(record, NO_STATE_LOGGED, end) else ""
 

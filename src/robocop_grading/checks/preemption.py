@@ -6,8 +6,8 @@ from typing import Optional
 from ..handout import Limits
 from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, feedback_of, results_of, samples_between, status_name
 from ..texts import sentences
-from .endings import success_too_far, wrong_ending
-from .output import EXCEPTION_LOGGED, logged
+from .endings import wrong_ending, wrong_success
+from .output import EXECUTE_RAISED, logged
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 MOVING, TURNING = 0.02, 0.05  # [m/s], [rad/s]
@@ -101,10 +101,10 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
     if goal.id not in answered:
         cause = "The server no longer accepts goals"
         return Failed("an answer to the next goal", "none", goal.time, cause, Kind.NO_ANSWER, goal)
-    problem = wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
+    problem = wrong_success(record, goal, limits)
     if problem is None:
         return PASSED
-    if logged(record, EXCEPTION_LOGGED, problem.time) or problem.kind is Kind.NOT_RESET:
+    if logged(record, EXECUTE_RAISED, problem.time, goal.time) or problem.kind is Kind.NOT_RESET:
         return problem
     before = status_name(results_of(record, record.goals[-2])[0].status)
     hint = f"The next goal fails after the one before it ended as {before}: is all state that a goal changes reset?"

@@ -40,6 +40,7 @@ class Kind(enum.Enum):
     WRONG_POSITION = "the position is wrong"
     WRONG_ERROR = "an error is wrong"
     OLD_POSE = "an error is old"
+    TOO_LITTLE = "too few messages"
     # The bridge.
     NO_GOAL = "no goal"
     OTHER_POSITION = "another position"

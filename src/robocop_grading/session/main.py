@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..errors import GraderLostError
 from ..record import read
-from .bridge import BridgeRun
+from .bridge_run import BridgeRun
 from .job import Job, begin_to_tell, tell
 from .run import Run
 from .server import ServerRun
@@ -25,7 +25,7 @@ def main() -> None:
 
 
 def _run(job: Job) -> None:
-    stage = Stage(job.plan)
+    stage = Stage()
     run: Run = (ServerRun if job.part == "server" else BridgeRun)(job, stage)
     try:
         run.scenarios()

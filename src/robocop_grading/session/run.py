@@ -1,19 +1,21 @@
 """One node's run through the scenarios of its part: the ticks, and a record of everything that the node sends."""
 
 from collections import defaultdict
-from typing import Any, Callable, DefaultDict, Dict, List, Set
+from typing import Any, Callable, DefaultDict, Dict, List, Sequence, Set
 
 from actionlib_msgs.msg import GoalStatusArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionResult
 from geometry_msgs.msg import Twist
 from rosgraph_msgs.msg import Log
 
-from aro_robocop_goto_as.geometry import STANDSTILL
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D
 from aro_robocop_goto_as.ros import convert
 
 from .. import record as rec
 from ..handout import ACTION
+from ..plan import Block
 from ..record import Record
+from ..sites import ORIGIN
 from .job import Job, tell
 from .node import Node, Spent
 from .services import Services
@@ -30,7 +32,7 @@ class Run:
 
     def __init__(self, job: Job, stage: Stage) -> None:
         self.job, self.plan, self.stage, self.topics = job, job.plan, stage, stage.topics
-        self.services = Services(stage.simulation)
+        self.services = Services(stage.sim)
         self.ended: Set[str] = set()
         self.known: Dict[str, int] = {}  # goal -> status
         self.parts: DefaultDict[str, List[Any]] = defaultdict(list)  # by field of the record
@@ -38,6 +40,7 @@ class Run:
         self.marks: Dict[str, float] = {}
         self.death_recorded = False
         self._spent = Spent()
+        self._started = Pose2D()  # odom_from_footprint when the node was started
         self.topics.listen("/cmd_vel", Twist, self._on_command)
         self.topics.listen("/rosout", Log, self._on_log)
 
@@ -49,14 +52,14 @@ class Run:
         """Tell the grader which scenario is the next one."""
         tell(f"begin {name}")
 
-    def begin(self, name: str, index: int, odd_scan: bool = False) -> None:
-        """Start a scenario's record and bag, with the robot at the start of the site of this index."""
+    def begin(self, name: str, site: Pose2D = ORIGIN, blocks: Sequence[Block] = (), odd_scan: bool = False) -> None:
+        """Start a scenario's record and bag, with the robot at rest at its site."""
         self.parts = defaultdict(list)
         self._before.clear()
         self.marks = {}
         self.stage.bag.open(self.job.out / f"{self.job.part}-{name}.bag")
         self.stage.command(STANDSTILL)
-        self.stage.begin(index, odd_scan)
+        self.stage.begin(site, blocks, odd_scan)
 
     def finish(self, name: str, **more: Any) -> Record:
         """Write the scenario's record, and return it."""
@@ -66,6 +69,7 @@ class Run:
         record = Record(
             name,
             self.job.part,
+            started=self._started,
             marks=self.marks,
             other_types=others,
             programs=tuple(sorted(self.topics.programs)),
@@ -104,6 +108,7 @@ class Run:
         """Start the node that is graded."""
         self.death_recorded = False
         stage = self.stage
+        self._started = stage.odom_from_footprint()
         now_ns, clock_ns = stage.sim.stamp_ns, stage.clock_ns
         stage.node = Node(self.job, self.topics, self.services, self._on_line, now_ns, clock_ns, self._spent)
 

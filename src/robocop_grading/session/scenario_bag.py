@@ -8,14 +8,12 @@ import rosbag
 import rospy
 from visualization_msgs.msg import MarkerArray
 
-from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.sim.world_markers import world_markers
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 from ..agent import wire
 from ..handout import ACTION
-from ..plan import MAX_OFFSET
 from .step_messages import StepMessage
 from .topics import header
 
@@ -76,14 +74,10 @@ class ScenarioBag:
                 topic, message, stamp, raw, header(message, topic=topic, latching="1") if topic in LASTING else None
             )
 
-    def write_scenery(self, site: Pose2D) -> None:
+    def write_scenery(self) -> None:
         """The obstacles of this scenario, and wheels, which the robot's model needs."""
-        near = [
-            marker
-            for marker in world_markers(self._sim.world, self._world_frame, self._sim.time)
-            if abs(marker.pose.position.x - site.x) < MAX_OFFSET
-        ]
-        self.write("/robocop_sim/world", MarkerArray(near))
+        markers = world_markers(self._sim.world, self._world_frame, self._sim.time)
+        self.write("/robocop_sim/world", MarkerArray(markers))
         self.write("/joint_states", convert.to_joint_state((0.0, 0.0), (0.0, 0.0), convert.to_time(self._sim.stamp_ns)))
 
     def write_step(self, stamp_ns: int, messages: Sequence[StepMessage]) -> None:

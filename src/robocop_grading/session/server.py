@@ -8,13 +8,14 @@ from aro_robocop_goto_as.msg import GoToPositionActionGoal, GoToPositionGoal
 from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose
-from aro_robocop_goto_as.goto import Errors, Progress, track_progress
+from aro_robocop_goto_as.goto.rule import Errors, LastProgress, track_progress
 from aro_robocop_goto_as.ros import markers
 
 from .. import record as rec
 from ..handout import ACTION
 from ..plan import AGAIN, START, Push, Scenario, Step
 from ..record import Record
+from ..sites import SITE
 from .job import Job
 from .run import TICK, Run
 from .scenario_bag import MARKERS
@@ -24,6 +25,7 @@ START_TIMEOUT = 20.0  # [s] for the node to come up: it publishes /rosout
 SERVER_TIMEOUT = 5.0  # [s] for its action server to connect, counted from then on
 WARM_UP = 0.5  # [s] of each scenario: new odometry and scans reach the node
 AT_END = 0.25  # [s] before a result, in which the robot was where it ended
+BEFORE_START, PUSHED = Twist2D(0.3, 0.4), 1.5  # [m/s], [rad/s]; [s]
 AFTER = 1.2  # [s] after each terminal state, to see whether the robot stops
 GOAL, CANCEL = f"{ACTION}/goal", f"{ACTION}/cancel"
 
@@ -45,14 +47,18 @@ class ServerRun(Run):
         """Start the node, then all scenarios, if its action server comes up."""
         self.announce(START)
         start = self._start()
-        for index, scenario in enumerate(self.plan.scenarios, 1):
+        for scenario in self.plan.scenarios:
             if start.up and self.plan.examines(self.job.part, scenario.name):
                 self.announce(scenario.name)
-                self._scenario(index, scenario)
+                self._scenario(scenario)
 
     def _start(self) -> Record:
-        """Start the node; the record says whether its action server came up."""
-        self.begin(START, 0)
+        """Start the node where odometry is not zero; the record says whether its action server came up."""
+        self.begin(START, SITE)
+        self.stage.push(BEFORE_START)
+        self.settle(PUSHED)
+        self.stage.push(None)
+        self.settle(AFTER)
         up = self._bring_up()
         names = self.names("/result")
         self.settle(0.3)
@@ -73,21 +79,21 @@ class ServerRun(Run):
 
     # -- one scenario --
 
-    def _scenario(self, index: int, scenario: Scenario) -> None:
+    def _scenario(self, scenario: Scenario) -> None:
         """Run a scenario's script to its end, or until it can't continue.
 
         The scenario is repeated with a new node if a goal ended otherwise than it should or did not end, and the node
         had served other scenarios. attempts.py decides which of the two records counts, when all records are there.
         """
-        used = self._used
-        record = self._play(index, scenario, scenario.name)
+        used = self._used and not self.is_dead()
+        record = self._play(scenario, scenario.name)
         unended = bool(record.problem) and not record.deaths
         if used and (unended or self._unexpected(record)):
-            self._play(index, scenario, scenario.name + AGAIN)
+            self._play(scenario, scenario.name + AGAIN)
 
-    def _play(self, index: int, scenario: Scenario, name: str) -> Record:
+    def _play(self, scenario: Scenario, name: str) -> Record:
         """Run a scenario with the present node; its record has this name."""
-        self.begin(name, index, scenario.odd_scan)
+        self.begin(name, SITE, scenario.obstacles, scenario.odd_scan)
         problem = ""
         self.ended.clear()
         self._pushes = list(scenario.pushes)
@@ -98,8 +104,8 @@ class ServerRun(Run):
         self._used = True
         if not problem:
             self.settle(WARM_UP)
-            for number, step in enumerate(scenario.steps, 1):
-                problem = self._step(index, f"{scenario.name}-{number}", step)
+            for step in scenario.steps:
+                problem = self._step(step)
                 if problem:
                     break
         if problem:
@@ -131,28 +137,29 @@ class ServerRun(Run):
                     return True
         return False
 
-    def _step(self, index: int, name: str, step: Step) -> str:
+    def _step(self, step: Step) -> str:
         """Run one step of a script; returns the problem, or an empty text."""
         if step.place:
-            self.stage.teleport(index, Pose2D(*step.place))
+            self.stage.teleport(Pose2D(*step.place))
             self.settle(WARM_UP)
             return ""
         if step.goal:
-            goal = self._send(name, step)
+            goal = self._send(step)
             self.stage.digest()
         elif step.cancel:
             goal = self.parts["goals"][-1]
             self.add("cancels", rec.Cancel(self.stage.now, goal.id))
             self.topics.publish(CANCEL, GoalID(id=goal.id))
             self.stage.digest()
-        if step.run:
+        if not step.ends:
             return self._advance(goal, step.run)
         problem = self._until_end(goal)
         if not problem or step.ends == "PREEMPTED":
             self.settle(AFTER)
         return problem
 
-    def _send(self, name: str, step: Step) -> rec.Goal:
+    def _send(self, step: Step) -> rec.Goal:
+        name = f"goal-{self.stage.now:.1f}"  # says nothing about the scenario to the node
         x, y = step.goal
         if step.of == "robot":
             there = compose(self.stage.odom_from_footprint(), Pose2D(x, y))
@@ -183,7 +190,7 @@ class ServerRun(Run):
         Progress towards an older goal that has not ended counts as well. When one has ended, the time starts anew.
         """
         started = self.stage.now
-        progress: Dict[str, Progress] = {}  # by goal
+        progress: Dict[str, LastProgress] = {}  # by goal
         while goal.id not in self.ended:
             problem = self._tick()
             if problem:

@@ -2,7 +2,7 @@
 
 import math
 from functools import partial
-from typing import Callable, Dict, List, Optional
+from typing import Callable, Dict, List, Optional, Sequence
 
 import numpy as np
 import rospy
@@ -11,7 +11,7 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import NANOSECONDS, STANDSTILL, Pose2D, Twist2D, compose, inverse
-from aro_robocop_goto_as.obstacle_ahead import beams_ahead
+from aro_robocop_goto_as.goto.obstacle_ahead import beams_ahead
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.ros import convert
@@ -19,15 +19,14 @@ from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.sensors.lidar import SCAN
 from aro_robocop_goto_as.sensors.odometry import ODOM
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.agenda import Due, Subscriptions
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.running import Simulation
+from aro_robocop_goto_as.simulation.params import SimParams
 
 from ..handout import AHEAD
-from ..plan import Plan
+from ..plan import Block
 from ..record import Sample
-from ..sites import site, world_of
+from ..sites import ORIGIN, world_of
 from .node import Node
 from .scenario_bag import ScenarioBag
 from .step_messages import StepMessages
@@ -42,12 +41,11 @@ ZERO_EVERY, NAN_EVERY = 5, 7  # beams of an odd scan: lidars report no return as
 
 
 class Stage:
-    """One robot in the world of all scenarios."""
+    """One robot, and the world of the present scenario."""
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self) -> None:
         robot = RobotSpec("", load_model(PARAMS.robots.model, share()), Pose2D())
-        self.sim = make_simulator(PARAMS, world_of(plan), [robot])
-        self.simulation = Simulation(self.sim)
+        self.sim = make_simulator(PARAMS, world_of(ORIGIN), [robot])
         published = StepTopics(self.sim)
         self.robot = published.robots[0]
         self._messages = StepMessages(self.sim, published)
@@ -64,7 +62,7 @@ class Stage:
         self._ahead = beams_ahead(lidar.samples, lidar.angle_min, lidar.increment, AHEAD)
         self.bag = ScenarioBag(self.sim, PARAMS.frames.world_frame)
         self.clock_ns = 0  # [ns] as on /clock
-        self._site = Pose2D()  # world_from_odom at the scenario's start
+        self._site = ORIGIN  # world_from_odom at the scenario's start
         self.node: Optional[Node] = None  # that is graded
         self._commanded, self._pushed = STANDSTILL, None  # type: Twist2D, Optional[Twist2D]
 
@@ -80,19 +78,20 @@ class Stage:
 
     # -- the robot --
 
-    def begin(self, index: int, odd_scan: bool) -> None:
-        """Put the robot at the start of a scenario: at rest at its site, odometry at zero."""
+    def begin(self, site: Pose2D, blocks: Sequence[Block], odd_scan: bool) -> None:
+        """Put the robot at the start of a scenario: at rest at its site among these blocks, odometry at zero."""
         self.odd_scan = odd_scan
         self.push(None)
-        self._site = site(index)
-        self.simulation.reset(PARAMS.world.seed)
-        self.simulation.place(site(index), anywhere=True)
+        self._site = site
+        self.sim.change_world(world_of(site, blocks))
+        self.sim.reset(PARAMS.world.seed)
+        self.sim.place(site)
         self._publish_frames()
-        self.bag.write_scenery(self._site)
+        self.bag.write_scenery()
 
-    def teleport(self, index: int, odom_from_footprint: Pose2D) -> None:
+    def teleport(self, odom_from_footprint: Pose2D) -> None:
         """Place the robot elsewhere on its site; its odometry continues as if nothing had happened."""
-        self.simulation.place(compose(site(index), odom_from_footprint), anywhere=True)
+        self.sim.place(compose(self._site, odom_from_footprint))
         self._publish_frames()
 
     def command(self, twist: Twist2D) -> None:

@@ -6,7 +6,7 @@ from documentation import ROOT
 from dynamic_reconfigure.client import Client
 from harness import DEADLINE, SERVER, SystemTest
 
-from aro_robocop_goto_as.goto_params import GotoParams
+from aro_robocop_goto_as.goto.params import GotoParams
 
 LAB = " ".join((ROOT / "docs" / "lab.md").read_text(encoding="utf-8").split())
 DEFAULTS = {name: getattr(GotoParams(), name) for name in ("angular_gain", "max_angular_velocity")}

@@ -11,7 +11,7 @@ from dynamic_reconfigure.client import Client
 from geometry_msgs.msg import Twist
 from harness import DEADLINE, SERVER, SIMULATOR, SystemTest, call_simulator, wait_for, wait_for_subscriber
 
-from aro_robocop_goto_as.goto_params import GotoParams
+from aro_robocop_goto_as.goto.params import GotoParams
 
 
 class Server(SystemTest):

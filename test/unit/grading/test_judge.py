@@ -59,7 +59,9 @@ def test_server_that_never_succeeds_is_not_blamed_for_odd_ranges() -> None:
 
 
 def test_exception_in_a_click_callback_is_named_as_the_cause_of_a_missing_goal() -> None:
-    printed = lines("bad callback: <goal_cb>", "Traceback (most recent call last):", "AttributeError: no attribute 'x'")
+    printed = lines(
+        "[ERROR] bad callback: <goal_cb>", "Traceback (most recent call last):", "AttributeError: no attribute 'x'"
+    )
     record = changed(name="click", part="bridge", goals=(), clicks=(CLICK,), lines=printed)
     assert "AttributeError: no attribute 'x'" in cause_of("bridge_alive", record)
     checks = checks_of(record)
@@ -77,10 +79,13 @@ def test_wall_that_was_hit_without_odd_ranges_is_not_blamed_on_them() -> None:
 
 
 def test_what_a_wrong_error_leads_to_follows_from_it_and_another_mistake_does_not() -> None:
-    misled = replace(fed_back(position=lambda d: d / 20.0), results=EARLY)
+    def ended_early(record: Record) -> Record:
+        return replace(record, results=EARLY, feedback=record.feedback[:51])
+
+    misled = ended_early(fed_back(position=lambda d: d / 20.0))
     still_driving = {"stands_at_end": ""}
     assert failures(misled) == {"feedback_position": "", "reaches_goal": "feedback_position", **still_driving}
-    unrelated = replace(fed_back(position=lambda _: 1.0), results=EARLY)  # its feedback did not say that it was there
+    unrelated = ended_early(fed_back(position=lambda _: 1.0))  # its feedback did not say that it was there
     assert failures(unrelated) == {"feedback_position": "", "reaches_goal": "", **still_driving}
 
 
@@ -195,3 +200,16 @@ def test_programs_of_ros_that_a_node_starts_are_named_whatever_failed() -> None:
     starts = replace(START, programs=("rostopic", "rosservice"))
     notes = graded(starts, replace(starts, name="left")).notes
     assert [it.startswith("server: it starts rosservice, rostopic: in a grading,") for it in notes] == [True]
+
+
+def test_missing_feedback_follows_from_the_exception_that_ended_its_timer() -> None:
+    printed = lines("Exception in thread Thread-6:", NO_NAME[0].text, "TypeError: tell() takes 1 argument")
+    assert failures(changed(lines=printed, feedback=())) == {"no_exception": "", "feedback_rate": "no_exception"}
+
+
+def test_rate_that_is_right_at_the_first_goal_and_grows_is_that_of_timers_that_go_on() -> None:
+    later = changed(name="far", goals=(replace(GOAL, time=0.0),), feedback=RIGHT.feedback * 5)
+    moved = replace(later, goals=(replace(GOAL, id="h", time=0.1),), results=(), statuses=())
+    fast = replace(moved, feedback=tuple(replace(it, id="h") for it in moved.feedback))
+    assert "right at the first goal and becomes higher" in cause_of("feedback_rate", RIGHT, fast)
+    assert "more often than 10 times" in cause_of("feedback_rate", later)

@@ -18,7 +18,6 @@ from robocop_grading.errors import PlanError
 from robocop_grading.packages import Packages
 from robocop_grading.plan import PARTS, Block
 from robocop_grading.plan_file import MAX_SEED, drawn, load
-from robocop_grading.sites import world_of
 
 SEEDS = st.integers(1, MAX_SEED)
 LEFT = "- {goal: [0.5..0.9, 0.5..0.9], ends: SUCCEEDED}"  # a scenario's script
@@ -29,7 +28,6 @@ def test_plan_has_points_for_both_parts_and_a_function_for_each_check() -> None:
     points = {part: sum(it.points for it in PLAN.checks if it.part == part and not it.extra) for part in PARTS}
     assert all(points.values()) and PLAN.points == pytest.approx(sum(points.values()))
     assert {check.name for check in PLAN.checks} == set(CHECKS)
-    assert len(world_of(PLAN).obstacles) == 1 + sum(len(scenario.obstacles) for scenario in PLAN.scenarios)
 
 
 def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None:
@@ -105,8 +103,16 @@ def test_seed_zero_takes_the_middle() -> None:
 def test_every_scenario_of_the_plan_differs_from_its_middle_and_is_repeatable(seed: int) -> None:
     chosen = load(PLAN_FILE, seed)
     assert chosen == load(PLAN_FILE, seed)
-    for before, after in zip(PLAN.scenarios, chosen.scenarios):
+    drawn_by_name = {scenario.name: scenario for scenario in chosen.scenarios}
+    for before in PLAN.scenarios:
+        after = drawn_by_name[before.name]
         assert (before.steps, before.obstacles) != (after.steps, after.obstacles), before.name
+
+
+@pytest.mark.parametrize("seed", [1, MAX_SEED])
+def test_seed_draws_the_order_of_the_scenarios_after_the_first_one(seed: int) -> None:
+    names, drawn_names = ([scenario.name for scenario in load(PLAN_FILE, it).scenarios] for it in (0, seed))
+    assert sorted(names) == sorted(drawn_names) and names[0] == drawn_names[0] and names != drawn_names
 
 
 @pytest.mark.parametrize("seed", [-1, MAX_SEED + 1])

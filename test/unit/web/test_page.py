@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.web.page import FIELD, FILLED, HEIGHT, MAX_CLICK, RIGHT, Cameras, axes_of, floor_point
+from aro_robocop_goto_as.web.page import FIELD, FILLED, HEIGHT, MAX_CLICK, RIGHT, BrowserCameras, axes_of, floor_point
 
 SCENES = [(393, 400), (1081, 1099), (250, 900), (457, 293), (955, 800), (580, 620), (1585, 1000)]  # [pixel]
 
@@ -25,7 +25,7 @@ def server_of(*sizes) -> SimpleNamespace:
     connected = []
     server = SimpleNamespace(initial_camera=SimpleNamespace(), get_clients=lambda: dict(enumerate(clients)))
     server.on_client_connect = connected.append
-    server.cameras = Cameras(server)
+    server.cameras = BrowserCameras(server)
     for client in clients:
         connected[0](client)
     return server

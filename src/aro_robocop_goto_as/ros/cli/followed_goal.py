@@ -19,11 +19,11 @@ from ...errors import FrameError
 from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, place, prefixed
 from ...probes import master
 from ...process import signals
-from ...web.walls import is_outside
+from ...raycast.enclosure import is_outside
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.goal_states import ending
-from ..marker_shapes import MarkerStore, obstacles
+from ..marker_shapes import MarkerStore, solids
 from ..waiting import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT, complain
 
@@ -155,7 +155,7 @@ def _watch_walls(goal: Point, transformer: GoalTransformer, odom: Callable[[], O
         seen.set()
         markers.apply(message)
         robot = here.pose.pose.position
-        walls = obstacles(markers.placed(transformer.pose_of))
+        walls = solids(markers.placed(transformer.pose_of))
         if is_outside((goal.x, goal.y), (robot.x, robot.y), walls):
             complain("the goal is outside of the walls of the world; the robot drives until one is in its way")
 

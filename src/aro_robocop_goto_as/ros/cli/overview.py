@@ -9,9 +9,9 @@ from ...errors import RobocopError
 from ...names import COMMAND_VARIABLE, SERVER, WEB, robocop
 from ...param_loading import from_dict
 from ...probes import master
-from ...sim_params import SimParams
+from ...simulation.params import SimParams
 from ...web.access import default_host, url
-from ...web_params import WebParams
+from ...web.params import WebParams
 
 DEFAULT_WORLD = SimParams().world.world
 # Goals in this world, after a reset: in front of the robot, and one that no moving pillar comes near to

@@ -19,13 +19,13 @@ from aro_robocop_goto_as.msg import (
     GoToPositionResult,
 )
 
-from ...bridge_params import BridgeParams
 from ...errors import FrameError
 from ...names import ACTION, BRIDGE, place
 from ..node_main import answer_help, load_params, node
 from . import discovery
 from .goal_frame import GoalTransformer
 from .goal_states import STATES, UNFINISHED, ending
+from .params import BridgeParams
 
 SERVER_TIMEOUT = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
 UNLOGGED = (

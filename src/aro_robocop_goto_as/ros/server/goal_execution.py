@@ -8,10 +8,9 @@ import ros_numpy
 
 from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionGoal
 
-from ... import goto
-from ...geometry import MAX_COORDINATE, STANDSTILL, Pose2D
-from ...goto import Decision, End, Errors, Goal, MoveForward, Outcome, Progress, Rotate, Turning
-from ...goto_params import GotoParams
+from ...geometry import MAX_COORDINATE, Pose2D, Twist2D
+from ...goto.params import GotoParams
+from ...goto.rule import Decision, EndGoal, Goal, MoveForward, Outcome, Pursuit, Rotate, step
 from ...names import place
 from .inputs import Inputs
 
@@ -38,12 +37,9 @@ class GoalExecution:
         self.outcome: Optional[Outcome] = None  # once the goal has ended
         self.accepted = time.monotonic()  # [s, wall]
         self.started: Optional[float] = None  # time of the first control period
-        self.twist = STANDSTILL  # to command in this control period
         self._inputs = inputs
         self._now = 0.0  # time of the newest control period
-        self._progress: Optional[Progress] = None
-        self._errors: Optional[Errors] = None  # of the previous step
-        self._turning = Turning()
+        self._pursuit = Pursuit()
 
     def refusal(self) -> Optional[Ending]:
         """The ending of a goal that is not a position in reach; None for a valid goal."""
@@ -61,29 +57,24 @@ class GoalExecution:
         self._now = now
         return self.started
 
+    @property
+    def twist(self) -> Twist2D:
+        """The velocity to command in this control period."""
+        return self._pursuit.twist
+
     def decide(self, pose: Pose2D, clearance: float, p: GotoParams) -> Decision:
         """Rotate, drive or end: sets `twist`."""
-        errors = goto.errors_to(self.goal, pose)
-        if self._errors is not None and goto.has_jumped(self._errors, errors, p):  # start anew, as after a reset
-            self._progress, self._turning = None, Turning()
-        self._errors = errors
-        decision = goto.decide(pose, clearance, self.goal, p, self._turning)
-        turning = self._turning.after(decision)
-        if turning.limit(p) < self._turning.limit(p):  # reversed, and slower now: its time starts anew
-            self._progress = None
-        self._turning = turning
-        self._progress = goto.track_progress(self._progress, errors, self._now, p.stuck_distance, p.stuck_angle)
-        self.twist = goto.limit_acceleration(self.twist, decision, 1.0 / p.control_rate, p)
+        decision, self._pursuit = step(self._pursuit, pose, clearance, self.goal, self._now, p)
         return decision
 
     def ending(self, decision: Decision, clearance: float, p: GotoParams) -> Optional[Ending]:
         """How the goal ends by the decision, without progress, or at its timeout; None to go on."""
         elapsed = self._elapsed()
-        without_progress = 0.0 if self._progress is None else self._now - self._progress.since
+        without_progress = self._pursuit.without_progress(self._now)
         where = f"{decision.errors.position:.3f} m from the goal {self.where()} after {elapsed:.1f} s"
-        if isinstance(decision, End) and decision.outcome is Outcome.REACHED:
+        if isinstance(decision, EndGoal) and decision.outcome is Outcome.REACHED:
             return Ending(Outcome.REACHED, where)
-        if isinstance(decision, End):
+        if isinstance(decision, EndGoal):
             obstacle = f"obstacle {clearance:.3f} m ahead (limit {p.obstacle_distance:g} m)"
             return Ending(decision.outcome, f"{obstacle}; {where}")
         if without_progress > p.stuck_timeout:

@@ -12,8 +12,8 @@ from sensor_msgs.msg import LaserScan
 
 from ...errors import FrameError, RobocopError
 from ...geometry import Pose2D
-from ...goto import Outcome
-from ...obstacle_ahead import clearance_ahead
+from ...goto.obstacle_ahead import clearance_ahead
+from ...goto.rule import Outcome
 from .. import convert
 from .tuning import Tuning
 

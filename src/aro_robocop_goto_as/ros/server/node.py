@@ -15,8 +15,8 @@ from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionGoal, GoToPo
 
 from ...errors import ClockError, MasterError, RobocopError
 from ...geometry import NANOSECONDS, STANDSTILL, Twist2D
-from ...goto import Outcome
-from ...goto_params import GotoParams
+from ...goto.params import GotoParams
+from ...goto.rule import Outcome
 from ...names import ACTION, SERVER
 from ...probes import master
 from .. import convert

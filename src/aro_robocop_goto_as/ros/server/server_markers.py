@@ -9,8 +9,8 @@ from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ...geometry import NANOSECONDS, Vector3
-from ...goto import Outcome
-from ...goto_params import GotoParams
+from ...goto.params import GotoParams
+from ...goto.rule import Outcome
 from .. import markers
 from ..trail import Trail
 from .goal_execution import GoalExecution

@@ -8,7 +8,7 @@ from dynamic_reconfigure.server import Server
 from aro_robocop_goto_as.cfg import GotoConfig
 
 from ...errors import ParameterError
-from ...goto_params import GotoParams, differences, tuned
+from ...goto.params import GotoParams, differences, tuned
 
 NAMES = tuple(GotoConfig.defaults)
 

@@ -14,14 +14,14 @@ from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActi
 from aro_robocop_goto_as.srv import SetPose
 
 from ...names import ACTION, absolute
+from ...raycast.enclosure import is_outside
 from ...web import text
 from ...web.page import floor_point
 from ...web.state import PageState
-from ...web.walls import is_outside
 from .. import convert, markers
 from ..client.goal_states import STATES, UNFINISHED, told
 from ..connected_nodes import publishers_of
-from ..marker_shapes import MarkerStore, obstacles
+from ..marker_shapes import MarkerStore, solids
 from .part import Context, Inbox, Part
 from .requests import Requests
 
@@ -74,7 +74,7 @@ class GoalHistory:
         self.latest.appendleft(Ended(robot, state, message, self.position(goal_id) or text.goal_in(message)))
 
 
-class Goals(Part):
+class GoalsPart(Part):
     """The goals of all robots. Their results are received also without a browser, for the history of later visitors."""
 
     def __init__(self, context: Context) -> None:
@@ -109,7 +109,7 @@ class Goals(Part):
             return
         place, pose = self._mode.value == PLACE_ROBOT, PoseStamped()
         where = f"{'pose' if place else 'goal'} {text.position(*point)}"
-        if state.pose and is_outside(point, state.pose.position[:2], obstacles(self.context.scene.shapes("world"))):
+        if state.pose and is_outside(point, state.pose.position[:2], solids(self.context.scene.shapes("world"))):
             self.context.state.change(answer=f"{where}: outside of the walls, nothing was sent")
             return
         pose.header.frame_id = state.root  # with time zero, which means the newest transforms

@@ -5,6 +5,7 @@ import threading
 import time
 from typing import Any, Dict, List, Optional, Sequence
 
+import rosgraph
 import rospy
 import yaml
 
@@ -13,24 +14,24 @@ from ...names import WEB
 from ...param_loading import from_dict
 from ...web import access, text
 from ...web.frames import FrameTree
-from ...web.page import Cameras, set_up
+from ...web.page import BrowserCameras, set_up
+from ...web.params import WebParams
 from ...web.scene import PageScene, color_of
 from ...web.state import PageState, SharedState
-from ...web_params import WebParams
 from .. import markers
 from ..node_main import answer_help, end_with_master, node
-from .goals import Goals
+from .goals import GoalsPart
 from .part import Context, Inbox, Part
 from .plots import plots
-from .replay import Replay
+from .replay import ReplayPart
 from .requests import Requests
-from .robots import Robots
-from .scenery import Scenery
+from .robots import RobotsPart
+from .scenery import SceneryPart
 from .server import LAB, start_server
-from .status import Status
-from .teleop import Teleop
-from .time_controls import TimeControls
-from .view import View
+from .status import StatusPart
+from .teleop import TeleopPart
+from .time_controls import TimePart
+from .view import ViewPart
 
 RATE = 12.0  # [Hz, wall] at which pages are updated; scans come at 5 or 10 Hz
 IDLE_PERIOD = 1.0  # [s, wall] between two checks without a visitor
@@ -61,13 +62,13 @@ def load_params(arguments: Sequence[str]) -> WebParams:
 def add_parts(context: Context, p: WebParams) -> List[Part]:
     """Add what the panel shows below the status: goals, tabs, the buttons that drive."""
     live = context.state.now.live
-    parts: List[Part] = [Replay(context, p.replay_waits)] if p.replay else []
-    goals = Goals(context)
+    parts: List[Part] = [ReplayPart(context, p.replay_waits)] if p.replay else []
+    goals = GoalsPart(context)
     parts.append(goals)
     tabs = context.server.gui.add_tab_group()
     with tabs.add_tab("Control" if live else "Goals"):
         goals.add_history()
-        parts.append(TimeControls(context))
+        parts.append(TimePart(context))
         sector = {words: color_of((c.r, c.g, c.b, c.a))[0] for words, c in SECTOR.items()}
         context.server.gui.add_html(text.legend("sector ahead", sector))
         if live and LAB.is_file():
@@ -75,8 +76,8 @@ def add_parts(context: Context, p: WebParams) -> List[Part]:
     with tabs.add_tab("Plots"):
         parts += plots(context)
     with tabs.add_tab("View"):
-        parts.append(View(context))
-    parts.append(Teleop(context, p.web_linear_velocity, p.web_angular_velocity))
+        parts.append(ViewPart(context))
+    parts.append(TeleopPart(context, p.web_linear_velocity, p.web_angular_velocity))
     return parts
 
 
@@ -92,8 +93,8 @@ class WebNode:
         scene, requests = PageScene(server.scene), Requests(self._state)
         context = Context(server, scene, self._state, requests, FrameTree(), p.web_frame)
         set_up(server)
-        cameras = Cameras(server)
-        self._parts = [Robots(context), Status(context), *add_parts(context, p), Scenery(context, cameras)]
+        cameras = BrowserCameras(server)
+        self._parts = [RobotsPart(context), StatusPart(context), *add_parts(context, p), SceneryPart(context, cameras)]
         # Topics that are always received; of the system and of the selected robot, while there is a visitor.
         self._always, self._system, self._detail = Inbox(), Inbox(), Inbox()
         self._robot: Optional[str] = None  # the robot with subscribed topics; None while there is no visitor
@@ -138,6 +139,12 @@ class WebNode:
                 part.ask_master(self._state.now, self._always)
 
 
+def consequence(arguments: Sequence[str]) -> str:
+    """What follows where the page can't start, as the end of a sentence; of the launch files only a replay needs it."""
+    given = rosgraph.names.load_mappings(arguments)
+    return "; everything else runs on, without the page" if "__log" in given and "replay" not in given else ""
+
+
 def main() -> None:
     """Serve the page until a signal, or the end of the ROS master."""
     answer_help("The web page that shows the running system in a browser.", "[web_port:=N] [web_host:=ADDRESS]")
@@ -145,7 +152,7 @@ def main() -> None:
         p = load_params(sys.argv[1:])
         server = start_server(p)
     except RobocopError as error:
-        sys.exit(f"{WEB}: {error.code}: {error}")
+        sys.exit(f"{WEB}: {error.code}: {error}{consequence(sys.argv)}")
     with node(WEB, disable_rostime=True):  # wall time: the page stays alive while simulated time is paused
         end_with_master()
         print(f"{WEB}: open {access.url(p.web_host, p.web_port)} in a browser", flush=True)

@@ -32,7 +32,7 @@ TIME: Dict[str, Any] = {
 AROUND_ZERO = {"min": {"pad": 0.1, "soft": -0.1, "mode": 1}, "max": {"pad": 0.1, "soft": 0.5, "mode": 1}}
 
 
-class Plot(Part):
+class PlotPart(Part):
     """The last seconds until now of a topic's figures; sent only while there is something in them."""
 
     def __init__(self, context: Context, texts: Texts, topic: str, kind: Any, figures: Figures) -> None:
@@ -75,18 +75,18 @@ class Plot(Part):
             self._handle.data = columns(self._samples, now)
 
 
-def plots(context: Context) -> List[Plot]:
+def plots(context: Context) -> List[PlotPart]:
     """The two plots of a robot."""
     errors, velocities = ("errors", "position [m]", "angle [rad]"), ("cmd_vel", "v [m/s]", "w [rad/s]")
     return [
-        Plot(
+        PlotPart(
             context,
             errors,
             f"{ACTION}/feedback",
             GoToPositionActionFeedback,
             lambda message: (message.feedback.position_error, message.feedback.angle_error),
         ),
-        Plot(context, velocities, "cmd_vel", Twist, lambda message: (message.linear.x, message.angular.z)),
+        PlotPart(context, velocities, "cmd_vel", Twist, lambda message: (message.linear.x, message.angular.z)),
     ]
 
 

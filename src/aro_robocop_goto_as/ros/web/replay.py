@@ -16,7 +16,7 @@ PAUSE_SERVICE = "/player/pause_playback"  # of rosbag's player, by its name in l
 SERVICE_TIMEOUT = 20.0  # [s, wall] for the player to offer it
 
 
-class Replay(Part):
+class ReplayPart(Part):
     """Only a page that shows a recording has this part."""
 
     def __init__(self, context: Context, waits: bool) -> None:

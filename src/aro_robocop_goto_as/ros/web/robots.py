@@ -22,7 +22,7 @@ BASES = ("base_footprint", "base_link")  # frames of a robot, the first one that
 TRANSFORMS = 1000  # messages that wait at most while the ROS master keeps the main thread waiting
 
 
-class Robots(Part):
+class RobotsPart(Part):
     """Also determines the selected robot's pose. The first of the parts, since all others need transforms."""
 
     def __init__(self, context: Context) -> None:

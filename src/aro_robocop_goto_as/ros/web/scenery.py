@@ -10,7 +10,7 @@ from visualization_msgs.msg import MarkerArray
 
 from ...geometry import Pose3D, compose3
 from ...names import SERVER, SIMULATOR, absolute
-from ...web.page import Cameras
+from ...web.page import BrowserCameras
 from ...web.scene import IMAGE, POINTS, TEXT, Group, Shape
 from ...web.state import PageState
 from ..marker_shapes import MarkerStore, to_pose
@@ -26,10 +26,10 @@ MAX_MAP_CELLS = 2000  # cells along a side; larger maps are thinned out
 UNKNOWN, FREE, OCCUPIED = (90, 95, 105, 120), (205, 210, 216, 60), (20, 22, 26, 255)  # red, green, blue, opacity
 
 
-class Scenery(Part):
+class SceneryPart(Part):
     """Scan and map wait until their frames are known, and are drawn once."""
 
-    def __init__(self, context: Context, cameras: Cameras) -> None:
+    def __init__(self, context: Context, cameras: BrowserCameras) -> None:
         super().__init__(context)
         self._cameras = cameras
         self._world, self._server = MarkerStore(), MarkerStore()

@@ -9,7 +9,7 @@ from typing import Any, Iterator
 from ...errors import WebError
 from ...names import robocop
 from ...web import access
-from ...web_params import WebParams
+from ...web.params import WebParams
 
 LAB = Path(__file__).resolve().parents[4] / "docs" / "lab.md"
 MAX_REQUEST = 1 << 20  # [byte] that a page may send at once

@@ -20,7 +20,7 @@ SILENCE_TIMEOUT = 4.0  # [s, wall] the simulator, which reports once per second,
 WAITS = re.compile(r"; goal (x \S+ y \S+ in \S+) waits for it")  # in the bridge's report; shown as the newest goal
 
 
-class Status(Part):
+class StatusPart(Part):
     """The top of the panel."""
 
     def __init__(self, context: Context) -> None:

@@ -54,7 +54,7 @@ KEYS = "".join(
 )
 
 
-class Teleop(Part):
+class TeleopPart(Part):
     """Publishes cmd_vel while somebody drives, from a thread of its own, so that nothing else can delay a stop.
 
     Otherwise there is no publisher: a simulator in lockstep treats every publisher of cmd_vel as a controller.

@@ -15,7 +15,7 @@ from .part import Context, Part
 SETTLED = 2.0  # [s, wall] after a visitor has moved the slider: until then what is reported may be older than that
 
 
-class TimeControls(Part):
+class TimePart(Part):
     """Pause, run, reset (with the same seed) and the real-time factor; hidden where there is no simulator."""
 
     def __init__(self, context: Context) -> None:

@@ -22,7 +22,7 @@ TRAIL_LINE = Shape(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
 CROWDED = 0.6  # [m] between two frames; the names of nearer ones are below each other beside one of them
 
 
-class View(Part):
+class ViewPart(Part):
     """The options of the 3D scene, and the camera's image."""
 
     def __init__(self, context: Context) -> None:

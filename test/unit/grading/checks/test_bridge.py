@@ -85,10 +85,10 @@ def test_reports_that_are_empty_or_untrue_are_named(active: str, succeeded: str,
 
 # Four goals, like those of the grader's scenario: when each is sent, for how long it is active [s], and how it ends.
 DRIVES = (
-    (1.0, 30.0, rec.SUCCEEDED),
-    (39.0, 5.0, rec.ABORTED),
-    (55.0, 2.0, rec.PREEMPTED),
-    (57.4, 5.0, rec.PREEMPTED),
+    (1.0, 25.0, rec.SUCCEEDED),
+    (32.0, 5.0, rec.ABORTED),
+    (46.0, 2.0, rec.PREEMPTED),
+    (48.4, 5.0, rec.PREEMPTED),
 )
 KEPT = 5.0  # [s] for which an ended goal stays in an action server's status
 
@@ -118,9 +118,9 @@ def _driven(report: Callable[[float], Iterable[str]], period: float) -> Record:
         goals.append(rec.Goal(str(number), 1.2, -0.4, sent, ""))
         for time, state in ((sent, rec.PENDING), (sent, rec.ACTIVE), (sent + active, end)):
             statuses.append(rec.Status(time, str(number), state))
-    times = [1.0 + period * number for number in range(1, round(65.0 / period))]
+    times = [1.0 + period * number for number in range(1, round(55.4 / period) + 1)]
     lines = tuple(rec.Line(time, text) for time in times for text in report(time))
-    marks = {"watching": 1.0, "watched": 31.0}
+    marks = {"watching": 1.0, "watched": 26.0}
     return Record("click", "bridge", goals=tuple(goals), statuses=tuple(statuses), lines=lines, marks=marks)
 
 
@@ -167,7 +167,7 @@ def test_reports_that_are_late_by_one_pass(period: float) -> None:
         (lambda time: _named(_states(time)), "SUCCEEDED, the state of an earlier goal"),
         (lambda time: _named(_states(time, KEPT)[:1]), "PREEMPTED, the state of an earlier goal, while the"),
         (lambda time: _named([min(_states(time)[-1], 3)]), "reports SUCCEEDED while the goal is ABORTED"),
-        (lambda time: _named(_states(time)[-1:]) if time < 44.0 else [], "Nothing is reported while this goal is"),
+        (lambda time: _named(_states(time)[-1:]) if time < 37.0 else [], "Nothing is reported while this goal is"),
     ],
 )
 def test_reports_that_do_not_follow_the_truth_fail(
@@ -313,8 +313,9 @@ def test_position_that_is_wrong_in_both_goals_does_not_count_twice() -> None:
 def test_bridge_that_takes_pending_for_the_end_is_advised() -> None:
     click = _reported("state: ACTIVE", "state: SUCCEEDED")
     records = {"click": click, "replace": _replaced(rec.Cancel(5.0, "older"))}
-    pending = replace(_replaced(preempted=""), name="pending", marks={"watching": 1.0, "watched": 4.9})
-    right = replace(records["replace"], marks=pending.marks, lines=(rec.Line(2.0, "x"), rec.Line(3.0, "x")))
+    once = (rec.Line(2.0, "stops at PENDING"),)
+    pending = replace(_replaced(preempted=""), name="pending", marks={"watching": 1.0, "watched": 13.0}, lines=once)
+    right = replace(records["replace"], marks=pending.marks, lines=(rec.Line(2.0, "x"), rec.Line(12.0, "x")))
     stops, sees_none = about_pending({**records, "pending": pending}, LIMITS)
     assert stops.startswith("its reports stop while a goal is PENDING")
     assert sees_none.startswith("it does not cancel an older goal that is PENDING")

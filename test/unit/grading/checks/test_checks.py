@@ -45,10 +45,15 @@ def _aborted(**changes: Any) -> Record:
     return changed(**{"goals": (goal,), "results": (result,), "samples": samples, **changes})
 
 
+FOR_EVER = tuple(replace(RIGHT.feedback[-1], time=10.5 + tick / 10.0) for tick in range(8))
+THERE = (replace(RIGHT.goals[0], x=-0.03, y=0.03),)
 WRONG: List[Tuple[str, Record, str]] = [
     ("feedback_rate", changed(feedback=()), "No feedback was sent at all"),
     ("feedback_rate", changed(feedback=RIGHT.feedback[::5]), "not sent in each iteration"),
     ("feedback_rate", changed(feedback=RIGHT.feedback * 5), "more often than 10 times"),
+    ("feedback_rate", changed(feedback=(*RIGHT.feedback, *FOR_EVER)), "goes on after its result"),
+    ("only_ahead_counts", changed(results=(replace(RIGHT.results[0], time=6.0),)), "before position_error is below"),
+    ("already_there", changed(goals=THERE, results=(rec.Result(1.0, "g", rec.SUCCEEDED, True, ""),)), "turns at the"),
     ("feedback_position", fed_back(position=lambda _: 0.7), "always 0.70"),
     ("feedback_position", fed_back(position=lambda _: 0.0), "always zero"),
     ("feedback_position", fed_back(position=lambda _: math.nan), "not finite"),
@@ -142,6 +147,8 @@ def test_empty_record_passes_only_the_checks_of_exceptions_and_deaths_and_fails_
     assert type(verdict) is kinds.get(name, NotReached), verdict
 
 
+KEY_ERROR = "Traceback (most recent call last):", "KeyError: 'x'"
+EXECUTE = "[ERROR] Exception in your execute callback: 'x'"
 UNPACK = (
     "Traceback (most recent call last):",
     '  File "/home/anna/robocop_goto_as.py", line 34, in execute_cb',
@@ -192,7 +199,7 @@ NO_UTF8 = "SyntaxError: Non-UTF-8 code starting with '\\xf8' in file {}robocop_g
 @pytest.mark.parametrize(
     "lines, seen, place",
     [
-        (("Traceback (most recent call last):", "KeyError: 'x'"), "KeyError: 'x'", ""),
+        (("Exception in thread Thread-6:", *KEY_ERROR), "KeyError: 'x'", ""),
         ((STOP, "[WARN] on"), "__main__.Stop: 1", " (robocop_goto_as.py, line 5: raise Stop(1))"),
         ((NO_UTF8.format("/tmp/a b/"),), NO_UTF8.format(""), ""),
     ],
@@ -255,11 +262,26 @@ def test_robot_that_goes_on_is_told_what_its_own_feedback_said() -> None:
         assert isinstance(verdict, Failed) and words in verdict.cause
 
 
-@pytest.mark.parametrize("time, words", [(9.9, "KeyError"), (11.0, "")])
-def test_exception_after_a_goal_is_not_charged_to_it(time: float, words: str) -> None:
-    lines = rec.Line(time, "Traceback (most recent call last):"), rec.Line(time, "KeyError: 'x'")
+@pytest.mark.parametrize(
+    "time, line, words",
+    [
+        (9.9, EXECUTE, "KeyError"),
+        pytest.param(11.0, EXECUTE, "", id="after the goal"),
+        pytest.param(9.9, "Exception in thread Thread-6:", "", id="elsewhere"),
+    ],
+)
+def test_only_an_exception_that_ends_a_goal_is_charged_to_it(time: float, line: str, words: str) -> None:
+    lines = tuple(rec.Line(time, text) for text in (line, *KEY_ERROR))
     verdict = CHECKS["stops_at_obstacle"](_aborted(lines=lines), LIMITS)
     assert verdict is PASSED if not words else isinstance(verdict, Failed) and words in verdict.cause
+
+
+@pytest.mark.parametrize("line", [KEY_ERROR[0], f"[ERROR] [1.2, 3.4]: {KEY_ERROR[0]}"])
+def test_exception_that_the_node_has_caught_and_printed_fails_no_check_unless_the_node_dies_of_it(line: str) -> None:
+    caught = logged(line, KEY_ERROR[1])
+    assert CHECKS["no_exception"](caught, LIMITS) is PASSED
+    assert CHECKS["stops_at_obstacle"](_aborted(lines=caught.lines), LIMITS) is PASSED
+    assert isinstance(CHECKS["no_exception"](replace(caught, deaths=(rec.Death(3.1, 1),)), LIMITS), Failed)
 
 
 @pytest.mark.parametrize("end, is_at_once", [(0.1, True), (9.0, False)])

@@ -2,12 +2,13 @@
 
 import math
 from dataclasses import replace
-from typing import Callable, List, Tuple
+from typing import Any, Callable, Dict, List, Tuple
 
 import pytest
 from grading_records import GOAL, PLAN, RIGHT
 
-from robocop_grading.judge import judge
+from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
+from robocop_grading.judge import CheckResult, judge
 from robocop_grading.record import Feedback, Goal, Sample, errors_at
 
 MIRRORED = tuple(
@@ -52,6 +53,7 @@ POSITION: List[Tuple[Callable[[Seen], float], str]] = [
     (lambda s: math.hypot(s.goal.x, s.goal.y), "from odom's origin: is the robot's position left out"),
     (lambda s: math.hypot(s.goal.x - s.at.world_x, s.goal.y - s.at.world_y), "taken in the world or map frame"),
     (lambda s: math.hypot(s.goal.y - s.at.x, s.goal.x - s.at.y), "The goal's x and y are swapped; or: The x and y of"),
+    (lambda s: s.distance * math.cos(s.angle), "only the part of the way that is along the robot's heading"),
     (lambda s: round(s.distance), "position_error is rounded to a whole number"),
     (lambda s: s.angle, "position_error is the angle error: are the two swapped?"),
 ]
@@ -65,6 +67,7 @@ ANGLE: List[Tuple[Callable[[Seen], float], str]] = [
     (lambda s: wrap(math.atan2(-s.dy, s.dx) - s.yaw), "as if a sign were wrong in atan2(dy, dx)"),
     (lambda s: wrap(math.atan(s.dy / s.dx) - s.yaw), "A goal behind looks like one ahead, as with atan(dy / dx)"),
     (lambda s: wrap(math.asin(s.dy / s.distance) - s.yaw), "The sign of dx has no effect, as with asin(dy / distance)"),
+    (lambda s: wrap(s.direction - math.degrees(s.yaw)), "The heading is in degrees"),
     (lambda s: -s.angle, "The sign of angle_error is wrong: it has to be the goal's direction minus the heading"),
     (lambda s: abs(s.angle), "angle_error has no sign: left and right can't be distinguished"),
     (lambda s: math.degrees(s.angle), "degrees"),
@@ -73,6 +76,19 @@ ANGLE: List[Tuple[Callable[[Seen], float], str]] = [
     (lambda s: int(s.angle), "angle_error is rounded to a whole number"),
     (lambda s: wrap(math.atan2(s.goal.y, s.goal.x) - s.yaw), "from where the robot is when the goal comes, or from"),
 ]
+
+
+def judged(feedback: Callable[[Tuple[Sample, ...], Goal], List[Feedback]], **fields: Any) -> Dict[str, CheckResult]:
+    """The results by check of a server that gives this feedback on its drives; `fields` are those of the first one."""
+    records = {}
+    for name, (samples, x, y) in DRIVES.items():
+        goal = replace(GOAL, x=x, y=y)
+        told = tuple(feedback(samples, goal))
+        records[name] = replace(RIGHT, name=name, goals=(goal,), samples=samples, feedback=told)
+    records["left"] = replace(records["left"], **fields)
+    return {check.name: check for check in judge("anna", PLAN, {"server": records}, {}).checks}
+
+
 FORMULAS = [("position", *row) for row in POSITION] + [("angle", *row) for row in ANGLE]
 
 
@@ -80,12 +96,44 @@ FORMULAS = [("position", *row) for row in POSITION] + [("angle", *row) for row i
 def test_cause_of_wrong_errors_is_the_formula_that_leads_to_them(
     error: str, formula: Callable[[Seen], float], words: str
 ) -> None:
-    records = {}
-    for name, (samples, x, y) in DRIVES.items():
-        goal = replace(GOAL, x=x, y=y)
-        feedback = tuple(fed_back(samples, goal, f"{error}_error", formula))
-        records[name] = replace(RIGHT, name=name, goals=(goal,), samples=samples, feedback=feedback)
-    checks = {check.name: check for check in judge("anna", PLAN, {"server": records}, {}).checks}
+    checks = judged(lambda samples, goal: fed_back(samples, goal, f"{error}_error", formula))
     wrong, right = checks[f"feedback_{error}"], checks[f"feedback_{'angle' if error == 'position' else 'position'}"]
     assert wrong.failure is not None and words in wrong.failure.cause
     assert right.failure is None
+
+
+@pytest.mark.parametrize(
+    "shown, words",
+    [
+        (
+            lambda number: number - number % 10,
+            "position_error is the same in 10 messages in a row while the robot moves",
+        ),
+        (lambda number: max(0, number - 10), "position_error in the feedback is that of about 1.0 s ago"),
+        (lambda number: max(0, number - 2), "position_error in the feedback is old"),
+    ],
+)
+def test_errors_of_an_old_pose_are_one_mistake_that_is_named(shown: Callable[[int], int], words: str) -> None:
+    def feedback(samples: Tuple[Sample, ...], goal: Goal) -> List[Feedback]:
+        right = fed_back(samples, goal, "position_error", lambda seen: seen.distance)
+        return [replace(right[shown(number)], time=it.time) for number, it in enumerate(right)]
+
+    checks = judged(feedback)
+    failure, angle = checks["feedback_position"].failure, checks["feedback_angle"]
+    assert failure is not None and words in failure.cause
+    assert angle.failure is None or angle.follows == "feedback_position"
+
+
+def test_pose_counted_from_the_start_of_the_node_is_named() -> None:
+    started = Pose2D(0.4, 0.1, 0.6)
+
+    def feedback(samples: Tuple[Sample, ...], goal: Goal) -> List[Feedback]:
+        first = started if samples is RIGHT.samples and goal.x == 1.0 else Pose2D()
+        poses = [compose(inverse(first), Pose2D(at.x, at.y, at.yaw)) for at in samples]
+        errors = [errors_at(pose, goal) for pose in poses]
+        return [replace(it, position_error=d, angle_error=a) for it, (d, a) in zip(RIGHT.feedback, errors)]
+
+    checks = judged(feedback, started=started)
+    failure = checks["feedback_position"].failure
+    assert failure is not None and "counted from where it was when the node started" in failure.cause
+    assert checks["feedback_angle"].follows == "feedback_position"

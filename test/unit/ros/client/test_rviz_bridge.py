@@ -8,10 +8,10 @@ from actionlib_msgs.msg import GoalID, GoalStatus
 from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionResult
 from geometry_msgs.msg import Point, PoseStamped
 
-from aro_robocop_goto_as.bridge_params import BridgeParams
 from aro_robocop_goto_as.errors import FrameError
 from aro_robocop_goto_as.ros.client import rviz_bridge
 from aro_robocop_goto_as.ros.client.goal_states import ending
+from aro_robocop_goto_as.ros.client.params import BridgeParams
 
 CHECKS = 6  # of is_shutdown, until the node ends
 

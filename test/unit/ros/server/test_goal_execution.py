@@ -9,8 +9,8 @@ from aro_robocop_goto_as.msg import GoToPositionGoal
 from geometry_msgs.msg import Point
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D
-from aro_robocop_goto_as.goto import Decision, End, Errors, MoveForward, Outcome, Rotate
-from aro_robocop_goto_as.goto_params import GotoParams
+from aro_robocop_goto_as.goto.params import GotoParams
+from aro_robocop_goto_as.goto.rule import Decision, EndGoal, Errors, MoveForward, Outcome, Rotate
 from aro_robocop_goto_as.ros.server.goal_execution import GoalExecution, feedback_of
 
 PERIOD = 100  # [ms] of the control loop
@@ -47,7 +47,7 @@ def test_velocity_grows_by_the_acceleration_limit_in_each_control_period() -> No
     [
         (Rotate(Errors(1.5, -0.25), STANDSTILL), "rotating, -0.25 rad to go"),
         (MoveForward(Errors(1.5, -0.25), STANDSTILL), "driving, 1.50 m to go"),
-        (End(Errors(1.5, -0.25), Outcome.OBSTACLE), "obstacle"),
+        (EndGoal(Errors(1.5, -0.25), Outcome.OBSTACLE), "obstacle"),
     ],
 )
 def test_feedback_holds_both_errors_and_what_the_robot_does(decision: Decision, text: str) -> None:

@@ -10,8 +10,8 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
 from aro_robocop_goto_as.errors import RobocopError
-from aro_robocop_goto_as.goto import Outcome
-from aro_robocop_goto_as.goto_params import GotoParams
+from aro_robocop_goto_as.goto.params import GotoParams
+from aro_robocop_goto_as.goto.rule import Outcome
 from aro_robocop_goto_as.ros.server import inputs
 from aro_robocop_goto_as.ros.server.inputs import FIRST_MESSAGE_TIMEOUT, Inputs
 

@@ -7,8 +7,8 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 from visualization_msgs.msg import Marker
 
-from aro_robocop_goto_as.goto import Goal, Outcome
-from aro_robocop_goto_as.goto_params import GotoParams
+from aro_robocop_goto_as.goto.params import GotoParams
+from aro_robocop_goto_as.goto.rule import Goal, Outcome
 from aro_robocop_goto_as.ros import markers
 from aro_robocop_goto_as.ros.markers import BLOCKED, FREE, NEAR, UNKNOWN
 from aro_robocop_goto_as.ros.server import server_markers

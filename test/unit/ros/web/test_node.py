@@ -3,8 +3,8 @@
 import pytest
 
 from aro_robocop_goto_as.errors import ParameterError
-from aro_robocop_goto_as.ros.web.node import load_params
-from aro_robocop_goto_as.web_params import WebParams
+from aro_robocop_goto_as.ros.web.node import consequence, load_params
+from aro_robocop_goto_as.web.params import WebParams
 
 
 def test_arguments_of_ros_and_empty_ones_are_left_out():
@@ -37,3 +37,15 @@ def test_wrong_arguments_are_refused_with_the_reason(argument, reason):
     with pytest.raises(ParameterError) as refused:
         load_params([argument])
     assert reason in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "arguments, runs_on",
+    [
+        (["robocop_web.py", "web_port:=1", "__name:=robocop_web", "__log:=/tmp/x"], True),
+        (["robocop_web.py", "web_port:=1", "replay:=x.bag", "__name:=replay", "__log:=/tmp/x"], False),
+        (["robocop_web.py", "web_port:=1"], False),
+    ],
+)
+def test_a_page_of_roslaunch_that_can_not_start_says_that_the_lab_runs_on(arguments, runs_on):
+    assert ("without the page" in consequence(arguments)) == runs_on

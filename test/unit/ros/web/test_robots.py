@@ -10,7 +10,7 @@ from tf2_msgs.msg import TFMessage
 from aro_robocop_goto_as.geometry import Pose3D
 from aro_robocop_goto_as.ros.graph import Topic
 from aro_robocop_goto_as.ros.web.part import Context
-from aro_robocop_goto_as.ros.web.robots import Robots, robots_of
+from aro_robocop_goto_as.ros.web.robots import RobotsPart, robots_of
 from aro_robocop_goto_as.web.frames import FrameTree
 from aro_robocop_goto_as.web.state import PageState, SharedState
 
@@ -29,7 +29,7 @@ def transform(x):
 
 def test_odometry_is_the_transform_where_nobody_publishes_that_one():
     frames = FrameTree()
-    robots = Robots(Context(MagicMock(), MagicMock(), SharedState(PageState()), MagicMock(), frames, "map"))
+    robots = RobotsPart(Context(MagicMock(), MagicMock(), SharedState(PageState()), MagicMock(), frames, "map"))
     robots._on_odometry(0.0, odometry(1.0))
     assert frames.lookup("odom", "base_footprint").position == (1.0, 0.0, 0.0)
     robots._on_tf(0.0, transform(2.0))
@@ -41,7 +41,7 @@ def test_odometry_is_the_transform_where_nobody_publishes_that_one():
 def test_a_robot_whose_wheels_have_slipped_is_where_it_truly_is_and_after_a_reset_where_tf_says(slipped, x):
     frames, state = FrameTree(), SharedState(PageState(slipped=slipped))
     frames.update("world", "odom", Pose3D())
-    robots = Robots(Context(MagicMock(), MagicMock(), state, MagicMock(), frames, "map"))
+    robots = RobotsPart(Context(MagicMock(), MagicMock(), state, MagicMock(), frames, "map"))
     truth = odometry(1.0)
     truth.header.frame_id = "world"
 

@@ -17,7 +17,7 @@ from aro_robocop_goto_as.ros.web.scenery import (
     MAX_MAP_CELLS,
     OCCUPIED,
     UNKNOWN,
-    Scenery,
+    SceneryPart,
     map_image,
     part_labels,
     scan_points,
@@ -47,7 +47,7 @@ def test_a_map_that_is_too_large_is_thinned_out():
 def test_the_cameras_turn_to_a_world_once():
     cameras, inbox = MagicMock(), MagicMock()
     state = SharedState(PageState(root="map"))
-    scenery = Scenery(Context(MagicMock(), PageScene(MagicMock()), state, MagicMock(), FrameTree(), "map"), cameras)
+    scenery = SceneryPart(Context(MagicMock(), PageScene(MagicMock()), state, MagicMock(), FrameTree(), "map"), cameras)
     scenery.subscribe(inbox)
     scenery.subscribe_to_robot(inbox, "")
     receive = inbox.subscribe.call_args_list[0][0][2]

@@ -8,13 +8,13 @@ from aro_robocop_goto_as.msg import SimStatus
 
 from aro_robocop_goto_as.probes import master
 from aro_robocop_goto_as.ros.web.part import Context
-from aro_robocop_goto_as.ros.web.status import Status
+from aro_robocop_goto_as.ros.web.status import StatusPart
 from aro_robocop_goto_as.web.frames import FrameTree
 from aro_robocop_goto_as.web.state import PageState, SharedState
 
 
 def made(state):
-    return Status(Context(MagicMock(), MagicMock(), SharedState(state), MagicMock(), FrameTree(), "map"))
+    return StatusPart(Context(MagicMock(), MagicMock(), SharedState(state), MagicMock(), FrameTree(), "map"))
 
 
 def test_a_page_that_no_simulator_has_reported_to_says_whether_one_runs(monkeypatch):

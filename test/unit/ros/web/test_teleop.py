@@ -31,7 +31,7 @@ def driven(monkeypatch, publishers, **state):
     monkeypatch.setattr(teleop.rospy, "Publisher", publishers)
     shared = SharedState(PageState(robots=("blue", "red"), chosen="red", **state))
     context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree(), "map")
-    return teleop.Teleop(context, 0.2, 1.0), context
+    return teleop.TeleopPart(context, 0.2, 1.0), context
 
 
 def test_the_selected_robot_is_driven_and_stopped_once(monkeypatch):

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import List
 
-from .param_loading import frame_problems, parameter, positive
+from ...param_loading import frame_problems, parameter, positive
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import pytest
 from aro_robocop_goto_as.cfg import GotoConfig
 
 from aro_robocop_goto_as.errors import ParameterError
-from aro_robocop_goto_as.goto_params import GotoParams, differences, tuned
+from aro_robocop_goto_as.goto.params import GotoParams, differences, tuned
 
 P = GotoParams()
 

@@ -5,41 +5,25 @@ from typing import Iterable, Tuple
 import numpy as np
 
 from ..geometry import Pose2D
-from ..raycast.cross_section import CrossSection
-from ..raycast.occupancy import FREE, occupancy_of
-from ..shapes import Box, Cylinder, Geometry, Mesh, Sphere
 from ..world.model import Obstacle, World
-from .scene import BOX, CYLINDER, MESH, SPHERE, Placed, Shape
+from .cross_section import CrossSection
+from .occupancy import FREE, occupancy_of
 
 HEIGHT = 0.1  # [m] above the floor, at which obstacles are in a robot's way
 CELL = 0.05  # [m] narrower openings let nothing pass
 MAX_CELLS = 1000  # per side; larger ones beyond it
 
 
-def is_outside(goal: Tuple[float, float], robot: Tuple[float, float], obstacles: Iterable[Placed]) -> bool:
+def is_outside(goal: Tuple[float, float], robot: Tuple[float, float], obstacles: Iterable[Obstacle]) -> bool:
     """Return whether obstacles enclose the robot, and not the goal; both x, y [m]. Never where the world has no walls.
 
     An open door is no wall: a way leads through it from the robot to the goal, however long this way is.
     """
-    world = World("", tuple(Obstacle("", pose, _geometry(shape)) for shape, pose in obstacles), Pose2D(), (), "")
-    section = CrossSection(world, HEIGHT)
+    section = CrossSection(World("", tuple(obstacles), Pose2D(), (), ""), HEIGHT)
     if not _reached(section, *goal)[0, 0]:
         return False
     within = _reached(section, *robot)  # no cell if an obstacle is in the robot's own, as beside a wall in large cells
     return bool(within.any()) and not within[0, 0]
-
-
-def _geometry(shape: Shape) -> Geometry:
-    x, y, z = shape.size
-    if shape.kind == BOX:
-        return Box((x, y, z))
-    if shape.kind == CYLINDER:
-        return Cylinder(x / 2.0, z)
-    if shape.kind == SPHERE:
-        return Sphere(x / 2.0)
-    if shape.kind == MESH:
-        return Mesh(np.array(shape.points).reshape(-1, 3, 3), "")
-    raise ValueError(f"no obstacle of the kind {shape.kind!r}")
 
 
 def _reached(section: CrossSection, x: float, y: float) -> np.ndarray:

@@ -17,6 +17,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
 
 from .. import record as rec
 from ..handout import ACTION, CLICKS
+from ..sites import SITE
 from .goals import Goals
 from .job import Job
 from .run import TICK, Run
@@ -30,9 +31,9 @@ BEFORE, SECOND = (1.24, -0.43), (-0.57, 0.86)  # [m] clicks in odom; a bridge th
 # The goals after the first one: the click, for how long [s] its goal is active, how it ends, and how long [s] the next
 # click takes to come. The last click comes while a server's status still begins with the goal before.
 LATER_GOALS = (
-    (SECOND, 5.0, rec.ABORTED, 11.0),
+    (SECOND, 5.0, rec.ABORTED, 9.0),
     (SECOND, 2.0, rec.PREEMPTED, 0.4),
-    (BEFORE, 5.0, rec.PREEMPTED, 4.0),
+    (BEFORE, 5.0, rec.PREEMPTED, 3.0),
 )
 # Types in which a bridge may report the goal's state: text, actionlib's states and their numbers. Not GoalStatusArray,
 # which any action server sends by itself, and not floats, which may be anything.
@@ -162,7 +163,7 @@ class BridgeRun(Run):
 
     def _no_server(self) -> None:
         """Start the bridge and send it a click while there is no server."""
-        self.begin("no_server", 0)
+        self.begin("no_server")
         self.launch()
         self.wait_for(lambda: self.topics.reaches(CLICKS) or self.topics.hears(f"{ACTION}/cancel"), START_TIMEOUT)
         self.settle(1.0)
@@ -175,9 +176,9 @@ class BridgeRun(Run):
     def _click(self) -> None:
         """Send clicks while there is a server; let time pass while each goal is active, and after its end.
 
-        The first goal is active for a report's period more than `status_span`, so that no report is lost by its phase.
+        The first goal is active for longer than `status_span`, so that no report is lost by its phase.
         """
-        self.begin("click", 0)
+        self.begin("click")
         self._serve()
         self.wait_for(self._has_client, CONNECT_TIMEOUT)
         self.settle(2.0)  # a click that the bridge has kept may come now
@@ -187,7 +188,7 @@ class BridgeRun(Run):
         self.marks["listeners"] = float(self.topics.reaches(CLICKS))
         self.marks["clients"] = float(self.topics.hears(f"{ACTION}/goal"))
         limits = self.plan.limits
-        first = (BEFORE, limits.status_span + limits.status_period, rec.SUCCEEDED, 8.0)
+        first = (BEFORE, limits.status_span + limits.status_period / 2.0, rec.SUCCEEDED, 6.0)
         for click, active, status, after in (first, *LATER_GOALS):
             self._send_click("odom", *click)
             self._watch_reports(active)
@@ -217,7 +218,7 @@ class BridgeRun(Run):
 
     def _replace(self) -> None:
         """Send a click, and a second click while the first goal is active."""
-        self.begin("replace", 0)
+        self.begin("replace")
         self._send_click("odom", *BEFORE)
         self.settle(2.0)
         self._send_click("odom", *SECOND)
@@ -230,7 +231,7 @@ class BridgeRun(Run):
         The first click is newer than the newest transform to odom, as most clicks in RViz are; map -> odom is static.
         """
         self._finish_goals()
-        self.begin("frame", 1)
+        self.begin("frame", SITE)
         self.settle(0.5)
         for twist, seconds in ((Twist2D(0.2, 0.0), 3.0), (Twist2D(0.0, 0.5), 2.0), (Twist2D(), 1.0)):
             self.stage.command(twist)
@@ -247,10 +248,10 @@ class BridgeRun(Run):
         """Send two clicks whose goals are not accepted yet; for advice, without points."""
         self._finish_goals()
         self.accepts = False
-        self.begin("pending", 0)
+        self.begin("pending")
         self.settle(1.0)
         self._send_click("odom", *BEFORE)
-        self._watch_reports(self.plan.limits.status_period + 1.0)
+        self._watch_reports(self.plan.limits.status_period + 2.0)
         self._stop_watching()
         self._send_click("odom", *SECOND)
         self.settle(2.0)

@@ -1,27 +1,28 @@
 """The lab's control rule as a pure function of pose, clearance, goal and parameters."""
 
 import math
-from typing import Any, List, Optional, Tuple
+from typing import Any, List, Tuple
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
-from aro_robocop_goto_as.goto import (
-    End,
+from aro_robocop_goto_as.goto.params import GotoParams
+from aro_robocop_goto_as.goto.rule import (
+    EndGoal,
     Errors,
     Goal,
     Outcome,
-    Progress,
+    Pursuit,
     Turning,
     decide,
     errors_to,
     has_jumped,
     limit_acceleration,
+    step,
     track_progress,
 )
-from aro_robocop_goto_as.goto_params import GotoParams
 
 P = GotoParams()
 near = st.floats(-20.0, 20.0)
@@ -62,10 +63,10 @@ def test_handouts_rule_ends_the_goal_else_turns_towards_it_else_drives_straight(
     decision = decide(Pose2D(0.0, 0.0, yaw), clearance, Goal(distance, 0.0), P)
     assert decision.errors == Errors(distance, -yaw)
     assert decision.twist == (STANDSTILL if isinstance(expected, Outcome) else pytest.approx(expected))
-    assert not isinstance(expected, Outcome) or (isinstance(decision, End) and decision.outcome is expected)
+    assert not isinstance(expected, Outcome) or (isinstance(decision, EndGoal) and decision.outcome is expected)
 
 
-def test_robot_is_never_slower_than_its_minimum_velocities() -> None:
+def test_rule_asks_for_the_minimum_velocities_where_the_gains_give_less() -> None:
     slow = GotoParams(linear_gain=0.01, angular_gain=0.01)
     assert decide(Pose2D(), math.inf, Goal(1.0, 0.0), slow).twist == (0.03, 0.0)
     assert decide(Pose2D(), math.inf, Goal(0.0, 1.0), slow).twist == (0.0, 0.3)
@@ -98,20 +99,14 @@ def test_robot_stops_at_once_where_its_goal_ends() -> None:
 def test_a_robot_whose_commands_arrive_late_arrives_all_the_same(
     delay: int, jitter: int, random: Any, yaw: float
 ) -> None:
-    pose, goal, turning, twist = Pose2D(0.0, 0.0, yaw), Goal(1.0, 0.0), Turning(), STANDSTILL
+    pose, goal, pursuit = Pose2D(0.0, 0.0, yaw), Goal(1.0, 0.0), Pursuit()
     sent: List[Tuple[int, Twist2D]] = []  # with the control periods in which they arrive
-    progress: Optional[Progress] = None
     for period in range(1200):
-        decision = decide(pose, math.inf, goal, P, turning)
-        if isinstance(decision, End):
+        decision, pursuit = step(pursuit, pose, math.inf, goal, 0.1 * period, P)
+        if isinstance(decision, EndGoal):
             return
-        before, turning = turning, turning.after(decision)
-        if turning.limit(P) < before.limit(P):  # as GoalExecution does
-            progress = None
-        progress = track_progress(progress, decision.errors, 0.1 * period, P.stuck_distance, P.stuck_angle)
-        assert 0.1 * period - progress.since <= P.stuck_timeout
-        twist = limit_acceleration(twist, decision, 0.1, P)
-        sent.append((period + delay + random.randint(0, jitter), twist))
+        assert pursuit.without_progress(0.1 * period) <= P.stuck_timeout
+        sent.append((period + delay + random.randint(0, jitter), pursuit.twist))
         driven = next((late for arrival, late in reversed(sent) if arrival <= period), STANDSTILL)
         pose = Pose2D(
             pose.x + 0.1 * driven.v * math.cos(pose.yaw),
@@ -139,12 +134,12 @@ def test_coming_nearer_or_turning_towards_the_goal_is_progress() -> None:
     assert track_progress(start, Errors(1.2, 0.6), 4.0, *moved).since == 0.0
 
 
-def test_only_what_no_driving_explains_is_a_jump() -> None:
+def test_errors_have_jumped_if_driving_does_not_explain_their_growth() -> None:
     p = GotoParams(data_timeout=0.5)  # within which the robot drives 0.1 m or turns by 0.5 rad
     before = Errors(1.0, -0.5)
     assert not any(has_jumped(before, errors, p) for errors in (Errors(1.19, -1.09), Errors(0.0, 1.09)))
     assert all(has_jumped(before, errors, p) for errors in (Errors(1.21, 0.0), Errors(1.0, -1.11), Errors(1.0, 1.11)))
 
 
-def test_an_outcome_is_called_as_it_is_written() -> None:
+def test_value_of_an_outcome_is_its_name() -> None:
     assert [outcome.value for outcome in Outcome] == [outcome.name for outcome in Outcome]

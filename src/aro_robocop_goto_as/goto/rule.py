@@ -1,12 +1,12 @@
-"""The lab's control law: pose, clearance ahead and goal -> a velocity, or an outcome."""
+"""The lab's control law, period after period: pose, clearance ahead and goal -> a velocity, or an outcome."""
 
 import enum
 import math
-from dataclasses import dataclass
-from typing import Optional, Union
+from dataclasses import dataclass, replace
+from typing import Optional, Tuple, Union
 
-from .geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
-from .goto_params import GotoParams
+from ..geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
+from .params import GotoParams
 
 
 class Outcome(enum.Enum):
@@ -57,7 +57,7 @@ class MoveForward:
 
 
 @dataclass(frozen=True)
-class End:
+class EndGoal:
     """End the goal with this outcome."""
 
     errors: Errors
@@ -65,7 +65,7 @@ class End:
     twist: Twist2D = STANDSTILL
 
 
-Decision = Union[Rotate, MoveForward, End]
+Decision = Union[Rotate, MoveForward, EndGoal]
 
 
 def errors_to(goal: Goal, pose: Pose2D) -> Errors:
@@ -108,13 +108,13 @@ def decide(pose: Pose2D, clearance: float, goal: Goal, params: GotoParams, turni
     """
     errors = errors_to(goal, pose)
     if errors.position < params.position_tolerance:
-        return End(errors, Outcome.REACHED)
+        return EndGoal(errors, Outcome.REACHED)
     if abs(errors.angle) > params.angle_tolerance:
         gain = params.angular_gain
         speed = _clamp(gain * abs(errors.angle), params.min_angular_velocity, turning.limit(params))
         return Rotate(errors, Twist2D(0.0, math.copysign(speed, errors.angle)))
     if clearance < params.obstacle_distance:
-        return End(errors, Outcome.OBSTACLE)
+        return EndGoal(errors, Outcome.OBSTACLE)
     speed = _clamp(params.linear_gain * errors.position, params.min_linear_velocity, params.max_linear_velocity)
     return MoveForward(errors, Twist2D(speed, 0.0))
 
@@ -132,9 +132,10 @@ def approach(value: float, target: float, step: float) -> float:
 def limit_acceleration(previous: Twist2D, decision: Decision, dt: float, params: GotoParams) -> Twist2D:
     """The velocity to command `dt` [s] after `previous`: acceleration-limited, either linear or angular.
 
-    The other velocity becomes 0 at once, because the handout's robot turns in place.
+    The other velocity becomes 0 at once, because the handout's robot turns in place. So after each turn the command
+    starts again at 0, and for some periods is below min_linear_velocity or min_angular_velocity.
     """
-    if isinstance(decision, End):
+    if isinstance(decision, EndGoal):
         return STANDSTILL
     if isinstance(decision, Rotate):
         return Twist2D(0.0, approach(previous.w, decision.twist.w, params.angular_acceleration * dt))
@@ -149,17 +150,49 @@ def has_jumped(before: Errors, errors: Errors, params: GotoParams) -> bool:
 
 
 @dataclass(frozen=True)
-class Progress:
+class LastProgress:
     """The errors when the robot last made progress, and that time [s]."""
 
     errors: Errors
     since: float
 
 
-def track_progress(last: Optional[Progress], errors: Errors, now: float, distance: float, angle: float) -> Progress:
+def track_progress(
+    last: Optional[LastProgress], errors: Errors, now: float, distance: float, angle: float
+) -> LastProgress:
     """The newest progress at a time [s]: nearer to the goal by a distance [m], or turned to it by an angle [rad]."""
     if last is None:
-        return Progress(errors, now)
+        return LastProgress(errors, now)
     nearer = errors.position < last.errors.position - distance
     turned = abs(errors.angle) < abs(last.errors.angle) - angle
-    return Progress(errors, now) if nearer or turned else last
+    return LastProgress(errors, now) if nearer or turned else last
+
+
+@dataclass(frozen=True)
+class Pursuit:
+    """What a goal's next control period needs to know of the periods before."""
+
+    twist: Twist2D = STANDSTILL  # commanded in the newest period
+    errors: Optional[Errors] = None  # of the newest period
+    turning: Turning = Turning()
+    progress: Optional[LastProgress] = None
+
+    def without_progress(self, now: float) -> float:
+        """How long [s] the robot has made no progress at a time [s]."""
+        return 0.0 if self.progress is None else now - self.progress.since
+
+
+def step(
+    before: Pursuit, pose: Pose2D, clearance: float, goal: Goal, now: float, params: GotoParams
+) -> Tuple[Decision, Pursuit]:
+    """One control period at a time [s]: the rule's decision, and the pursuit with the velocity to command."""
+    errors = errors_to(goal, pose)
+    if before.errors is not None and has_jumped(before.errors, errors, params):  # start anew, as after a reset
+        before = replace(before, turning=Turning(), progress=None)
+    decision = decide(pose, clearance, goal, params, before.turning)
+    turning, last = before.turning.after(decision), before.progress
+    if turning.limit(params) < before.turning.limit(params):  # reversed, and slower now: its time starts anew
+        last = None
+    progress = track_progress(last, errors, now, params.stuck_distance, params.stuck_angle)
+    twist = limit_acceleration(before.twist, decision, 1.0 / params.control_rate, params)
+    return decision, Pursuit(twist, errors, turning, progress)

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aro_robocop_goto_as.geometry import wrap_angle
-from aro_robocop_goto_as.obstacle_ahead import clearance_ahead
+from aro_robocop_goto_as.goto.obstacle_ahead import clearance_ahead
 
 LAYOUTS = [
     (0.0, 6.28319 / 359, 360),

@@ -1,33 +1,33 @@
 """Which goals are outside of the walls that a robot is in."""
 
-from typing import List
-
+import numpy as np
 import pytest
 
 from aro_robocop_goto_as.geometry import Pose3D
-from aro_robocop_goto_as.web.scene import BOX, CYLINDER, MESH, SPHERE, Placed, Shape
-from aro_robocop_goto_as.web.walls import is_outside
+from aro_robocop_goto_as.raycast.enclosure import is_outside
+from aro_robocop_goto_as.shapes import Box, Cylinder, Mesh, Sphere
+from aro_robocop_goto_as.world.model import Obstacle
 
 
-def wall(x: float, y: float, length: float, width: float, z: float = 0.25) -> Placed:
-    return Shape(BOX, (length, width, 0.5)), Pose3D((x, y, z))
+def wall(x: float, y: float, length: float, width: float, z: float = 0.25) -> Obstacle:
+    return Obstacle("", Pose3D((x, y, z)), Box((length, width, 0.5)))
 
 
 SIDES = [wall(0.0, 2.5, 5.15, 0.15), wall(0.0, -2.5, 5.15, 0.15), wall(-2.5, 0.0, 0.15, 5.15)]
 ROOM = [*SIDES, wall(2.5, 0.0, 0.15, 5.15)]
 DOOR = [*SIDES, wall(2.5, 1.5, 0.15, 2.15), wall(2.5, -1.5, 0.15, 2.15), wall(2.5, 0.0, 0.15, 1.0, z=2.3)]
-COLUMNS: List[Placed] = [
-    (Shape(CYLINDER, (0.3, 0.3, 0.5)), Pose3D((1.0, 0.0, 0.25))),
-    (Shape(SPHERE, (0.3, 0.3, 0.3)), Pose3D((-1.0, 0.0, 0.15))),
+COLUMNS = [
+    Obstacle("", Pose3D((1.0, 0.0, 0.25)), Cylinder(0.15, 0.5)),
+    Obstacle("", Pose3D((-1.0, 0.0, 0.15)), Sphere(0.15)),
 ]
 PILLAR, BALL = (1.0, 0.0), (-1.0, 0.0)  # [m]
 CORNERS = [(-2.5, -2.5), (2.5, -2.5), (2.5, 2.5), (-2.5, 2.5), (-2.5, -2.5)]  # [m]
-SHEETS = tuple(
+SHEETS = [
     (x, y, z)
     for (ax, ay), (bx, by) in zip(CORNERS, CORNERS[1:])
     for x, y, z in ((ax, ay, 0.0), (bx, by, 0.0), (ax, ay, 1.0), (bx, by, 1.0), (ax, ay, 1.0), (bx, by, 0.0))
-)
-MESH_ROOM = [(Shape(MESH, points=SHEETS), Pose3D())]
+]
+MESH_ROOM = [Obstacle("", Pose3D(), Mesh(np.array(SHEETS).reshape(-1, 3, 3), ""))]
 
 
 @pytest.mark.parametrize("walls", [ROOM, MESH_ROOM])

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, fields
 from functools import partial
 from typing import Any, List, Mapping
 
-from .param_loading import from_dict, parameter, positive
+from ..param_loading import from_dict, parameter, positive
 
 MAX_LINEAR = 10.0  # [m/s], [m/s^2] far above every model's limits, to which the base controller clamps commands anyway
 MAX_ANGULAR = 100.0  # [rad/s], [rad/s^2] the same for turning
