@@ -8,9 +8,9 @@ import signal
 import sys
 import tempfile
 from pathlib import Path
-from typing import List, Mapping, Sequence
+from typing import List, Mapping, Optional, Sequence
 
-from bench import BenchError, cases, report
+from bench import BenchError, cases, instructions, report
 from bench.measure import measure, other_checkout
 from bench.report import Measured, Row
 from systems import System
@@ -34,6 +34,8 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--cases", nargs="+", default=[], metavar="DRIVE[:ROBOTS]", help=known)
     against = "alternate between the simulator of another checkout and this one, and print the ratios of their figures"
     parser.add_argument("--against", type=Path, metavar="CHECKOUT", help=against)
+    counting = "count the instructions of a simulated second by valgrind, without ROS; other load does not change them"
+    parser.add_argument("--instructions", action="store_true", help=counting)
     args = parser.parse_args()
     seconds, repeats = QUICK if args.quick else USUAL
     args.seconds = seconds if args.seconds is None else args.seconds
@@ -41,6 +43,13 @@ def _arguments() -> argparse.Namespace:
     if not (0.1 <= args.seconds <= 3600.0 and args.repeats >= 1):
         parser.error(f"expected 0.1 to 3600 s and 1 repeat or more, got {args.seconds:g} s and {args.repeats}")
     return args
+
+
+def _instructions(wanted: Sequence[cases.Case], against: Optional[Path]) -> str:
+    """The table of instructions of the cases without a controller, in this checkout and another one."""
+    others = {"other": (against.absolute(), other_checkout(against))} if against else {}
+    counted = [case for case in wanted if not case.lockstep]
+    return instructions.table(counted, {**others, "this": (Path(__file__).parents[1], os.environ)})
 
 
 def _measure(rows: Sequence[Row], checkouts: Sequence[Mapping[str, str]], seconds: float, repeats: int) -> None:
@@ -74,6 +83,9 @@ def main() -> int:
     rows: List[Row] = []
     try:
         wanted = cases.parse_cases(args.cases or [*cases.DEFAULT, *(cases.LOCKSTEP if args.against else ())])
+        if args.instructions:
+            print(_instructions(wanted, args.against))
+            return 0
         where = report.conditions(args.seconds, args.repeats)
         checkouts = [*([other_checkout(args.against)] if args.against else []), os.environ]
         names = ["other", "this"] if args.against else [""]

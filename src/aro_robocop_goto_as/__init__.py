@@ -11,7 +11,8 @@ From a velocity command to odometry, scan, tf and clock:
         kinematic.c, pybullet     wheel speeds + world -> poses, velocities, wheel angles of the fleet
     simulation.agenda             the sensors that are due and subscribed to, and the calls that measure them
         sensors.catalog           the list of the sensors; each is a module with its parameters and its measurement
-    ros.sim.node                  the loop of simulation.running: has the simulator advance, publishes what it measured
+    simulation.running            the loop around all this: has the simulator advance, hands on what is due
+    ros.sim.node                  what the loop hands it on to
         ros.sim.step_topics       which messages are due, put together once as a batch: the clock last
         ros.sim.sensor_messages   at the start: each sensor's topic, and its packed message, bound to a robot's row
         ros.publishing.batch      the batch: batch.c copies these rows into the packed messages and sends them
@@ -51,13 +52,13 @@ From ./robocop COMMAND to the program that does the work:
     ros.cli.rviz                  topics, tf_static, the world's markers -> rviz_config.Observed
         ros.cli.rviz_config       + rviz/robocop.rviz -> the configuration file that RViz opens
 
-Only `ros` imports rospy. Each component of the simulator declares its parameters, in a group of its own; `sim_params`
-composes the groups. Limits and timeouts are parameters first, so look for them there and in `config/` before the
-code. `robot.fleet` holds the state of all robots as arrays, which the C files work on: where a .c and a .py have one
-name, C computes, and Python holds the figures and calls C. `compiled` loads the libraries that CMake builds from these.
-All readers of user-written files use `reading`. `process` is about operating system processes, and `probes` looks at
-the machine, also before anything is installed. Beside this package, `robocop_hosting` builds and runs other people's
-packages, and `robocop_grading` judges them.
+Only `ros` imports rospy. Each component of the simulator declares its parameters, in a group of its own, and
+`simulation.params` composes the groups. Limits and timeouts are parameters first, so look for them there and in
+`config/` before the code. `robot.fleet` holds the state of all robots as arrays, which the C files work on: where a .c
+and a .py have one name, C computes, and Python holds the figures and calls C. `compiled` loads the libraries that CMake
+builds from these. All readers of user-written files use `reading`. `process` is about operating system processes, and
+`probes` looks at the machine, also before anything is installed. Beside this package, `robocop_hosting` builds and runs
+other people's packages, and `robocop_grading` judges them.
 """
 
 from pkgutil import extend_path

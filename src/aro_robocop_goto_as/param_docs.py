@@ -14,7 +14,7 @@ from typing import Any, Dict, List, NamedTuple, Type, cast
 from .goto.params import GotoParams
 from .param_loading import MAX_POSITIVE, MIN_POSITIVE, declared
 from .ros.client.params import BridgeParams
-from .sim_params import SimParams
+from .simulation.params import SimParams
 from .web.params import WebParams
 
 COLUMN = 28  # of a comment in a YAML file, if the value is not longer

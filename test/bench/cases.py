@@ -12,6 +12,7 @@ DEFAULT = ("wheels:1", "wheels:10", "kinematic:1", "kinematic:10", "kinematic:50
 # [Hz], beams, [Hz]: rates used in published measurements of other simulators
 SCAN_RATE, SCAN_SAMPLES, ODOM_RATE = 5, 360, 30
 RADIUS = 0.2  # [m] of the circle that each robot drives, to its left
+VELOCITY = (0.1, 0.5)  # [m/s], [rad/s] on that circle
 CONTROLLERS = ("rospy", "server")  # of lockstep cases: a plain rospy loop at 10 Hz, this package's action server
 LOCKSTEP = tuple(f"{drive}:{controller}" for drive in PHYSICS_RATES for controller in CONTROLLERS)
 OBSTACLES = [(x, y) for x in (-3, 0, 3) for y in (-3, 0, 3)]  # [m] in worlds/bench.sdf

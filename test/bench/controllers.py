@@ -15,7 +15,7 @@ RATE = 10  # [Hz] of simulated time
 FIRST = 5  # cycles before the simulator waits for the loop
 POLL = 0.05  # [s, wall]
 GOALS = ((0.5, 0.5), (0.5, -0.5))  # x, y [m] in odom, between the obstacles of worlds/bench.sdf
-VELOCITY = Twist(Vector3(0.1, 0.0, 0.0), Vector3(0.0, 0.0, 0.5))  # a circle of the radius in cases.py
+VELOCITY = Twist(Vector3(0.1, 0.0, 0.0), Vector3(0.0, 0.0, 0.5))  # as in cases.py
 
 
 def constant_velocity(namespaces: List[str]) -> None:

@@ -83,8 +83,8 @@ class Tab:
             raise AssertionError(f"{error}, which says:\n{self.text()}\nerrors: {self.errors}") from error
 
     def button(self, label):
-        """A button of the panel."""
-        return self.page.get_by_role("button", name=label, exact=True)
+        """A button of the panel; a hot key may follow its label."""
+        return self.page.get_by_role("button", name=re.compile(rf"^{label}(\s\(\w\))?$"))
 
     def click(self, label):
         """Click a button at once; otherwise playwright waits for frames, of which a busy machine draws few."""

@@ -89,6 +89,7 @@ def test_the_room_fills_the_scene_of_a_phone_however_it_is_turned_and_a_tap_besi
 
 
 BUTTON_AT = "([x, y]) => document.elementFromPoint(x, y)?.closest('button')?.innerText.trim()"
+KEY_OF = "button => getComputedStyle(button.querySelector('.mantine-Button-label'), '::after').content"
 PHONES = (UPRIGHT, TURNED, (390, 664), (750, 340))  # [pixel] the same of an iPhone 12
 
 
@@ -103,6 +104,7 @@ def test_on_a_phone_the_buttons_that_drive_are_in_reach_and_as_large_as_a_finger
             middle = box["x"] + box["width"] / 2.0, box["y"] + box["height"] / 2.0
             assert box["height"] >= 44.0 and box["y"] + box["height"] <= size[1]
             assert tab.page.evaluate(BUTTON_AT, middle) == label
+            assert tab.button(label).evaluate(KEY_OF) == "none"
     tab.close()
 
 
@@ -152,7 +154,7 @@ def test_the_robot_turns_while_a_key_is_repeated_and_stops_when_it_is_released(w
 def test_the_robot_stops_when_the_page_that_drives_it_is_closed(web, browser):
     tab = Tab(browser, web.url)
     tab.wait_for_text(READY)
-    with contextlib.suppress(PlaywrightError), tab.held("Right (L)"):
+    with contextlib.suppress(PlaywrightError), tab.held("Right"):
         wait_for(lambda: web.turn() < -0.5, "the robot turns right")
         tab.close()
         wait_for(lambda: abs(web.turn()) < 0.05, "the robot stands")

@@ -32,12 +32,12 @@ def tab(web):
 
 
 def test_the_robot_that_is_chosen_is_driven_and_no_other(web, tab):
-    with tab.held("Right (L)"):
+    with tab.held("Right"):
         wait_for(lambda: web.turn(SECOND) < -0.5, f"{SECOND} turns right")
         assert web.stands(FIRST)
     wait_for(lambda: web.stands(SECOND), f"{SECOND} stands")
     tab.choose(SECOND, FIRST)
-    with tab.held("Left (J)"):
+    with tab.held("Left"):
         wait_for(lambda: web.turn(FIRST) > 0.5, f"{FIRST} turns left")
         assert web.stands(SECOND)
     wait_for(lambda: web.stands(FIRST), f"{FIRST} stands")

@@ -14,7 +14,7 @@ import yaml
 from aro_robocop_goto_as.goto.params import GotoParams
 from aro_robocop_goto_as.param_loading import declared, from_dict
 from aro_robocop_goto_as.ros.client.params import BridgeParams
-from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.params import SimParams
 
 ROOT = Path(__file__).resolve().parents[2]
 LAUNCH = ROOT / "launch"

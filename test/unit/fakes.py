@@ -1,4 +1,4 @@
-"""A wall clock that advances only while somebody waits, and an owner of a simulation without ROS."""
+"""A wall clock that advances only while somebody waits, and the owner of a running simulator without ROS."""
 
 import queue
 from typing import AbstractSet, Callable, List, Set, Tuple
@@ -6,15 +6,16 @@ from typing import AbstractSet, Callable, List, Set, Tuple
 from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.robot.model import RobotSpec
-from aro_robocop_goto_as.sim_params import SimParams
-from aro_robocop_goto_as.simulation.agenda import Due
+from aro_robocop_goto_as.simulation.agenda import Due, Subscriptions
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.jobs import Clock, Job, Queue
-from aro_robocop_goto_as.simulation.lockstep import ControllerId
-from aro_robocop_goto_as.simulation.running import Simulation
+from aro_robocop_goto_as.simulation.jobs import Queue, WallClock
+from aro_robocop_goto_as.simulation.lockstep import ControllerId, TickReport
+from aro_robocop_goto_as.simulation.params import SimParams
+from aro_robocop_goto_as.simulation.running import Outputs, RunningSimulator
+from aro_robocop_goto_as.simulation.simulator import Change
 
 
-class FakeClock(Clock):
+class FakeClock(WallClock):
     """Waiting takes no real time; actions may be scheduled at a time [s] of this clock."""
 
     def __init__(self) -> None:
@@ -29,7 +30,14 @@ class FakeClock(Clock):
     def now(self) -> float:
         return self.time
 
-    def get(self, jobs: "Queue[Job]", timeout: float) -> Job:
+    def sleep(self, seconds: float) -> None:
+        deadline = self.time + seconds
+        while self._scheduled and self._scheduled[0][0] <= deadline:
+            self.time, action = self._scheduled.pop(0)
+            action()
+        self.time = deadline
+
+    def get(self, jobs: "Queue[Callable[[], object]]", timeout: float) -> Callable[[], object]:
         deadline = self.time + max(0.0, timeout)
         while jobs.empty():
             if not self._scheduled or self._scheduled[0][0] > deadline:
@@ -40,8 +48,8 @@ class FakeClock(Clock):
         return jobs.get_nowait()
 
 
-class Owner:
-    """Runs one robot in the empty world with the loop of ros/sim/node.py, by a fake clock."""
+class Owner(Outputs):
+    """Runs one robot in the empty world without ROS, by a fake clock, and notes what is published."""
 
     def __init__(self, end: float = 1.0, **params: object) -> None:
         """Stops at a simulated time [s]; `params` are the simulator's."""
@@ -53,44 +61,33 @@ class Owner:
         self.events: List[object] = []
         self.on_tick: Callable[[int], object] = lambda stamp_ns: None  # called at each control tick
         self.is_stopped: Callable[[], bool] = lambda: self.simulator.time >= self.end
-        self.simulation = Simulation(self.simulator, self.clock, lambda: self.is_stopped())
+        self.running = RunningSimulator(self.simulator, self.clock, lambda: self.is_stopped())
 
-    def post(self, delay: float, job: Job) -> None:
+    def post(self, delay: float, job: Callable[[], object]) -> None:
         """Have another thread post a job after a delay [s, wall]."""
-        self.clock.at(delay, lambda: self.simulation.jobs.post(job))
+        self.clock.at(delay, lambda: self.running.jobs.post(job))
 
     def run(self) -> None:
-        simulator, time, controllers = self.simulator, self.simulation.time_control, self.simulation.controllers
-        time.pacer.restart(simulator.steps)
-        self._pace()
-        while not self.is_stopped():
-            due = simulator.advance({"odom": [0]}, time.steps_left(simulator.steps))
-            if due is not None:
-                self.seen.append((simulator.stamp_ns, due))
-                if due.control:
-                    self.on_tick(simulator.stamp_ns)
-                if due.control and controllers.in_lockstep:
-                    controllers.begin_tick(self._connected)
-                    self._hold(lambda: controllers.hold(self._connected))
-                    report = controllers.end_tick()
-                    self.events += [("late", report.late)] if report.late else []
-                    self.events += [("gone", controller) for controller in report.gone]
-            if time.end_span(simulator.steps) or (due is not None and due.clock):
-                self._pace()
+        self.running.run(self)
 
-    def _pace(self) -> None:
-        self.simulation.jobs.run_queued()
-        self._hold(lambda: self.simulation.time_control.hold(self.simulator.steps))
+    def subscriptions(self) -> Subscriptions:
+        return {"odom": [0]}
 
-    def _hold(self, hold: Callable[[], float]) -> None:
-        started = self.clock.now()
-        wait = hold()
-        while wait > 0.0 and not self.is_stopped():
-            self.simulation.jobs.run_next(wait)
-            if self.simulation.time_control.repetition_due():
-                self.events.append("clock repeated")
-            wait = hold()
-        self.simulation.time_control.pacer.waited(self.clock.now() - started)
-
-    def _connected(self) -> AbstractSet[ControllerId]:
+    def connected(self) -> AbstractSet[ControllerId]:
         return {ControllerId(0, node) for node in self.nodes}
+
+    def publish(self, due: Due, more: bool) -> None:
+        self.seen.append((self.simulator.stamp_ns, due))
+        if due.control:
+            self.on_tick(self.simulator.stamp_ns)
+
+    def publish_changes(self, changes: AbstractSet[Change]) -> None:
+        if changes != set(Change):  # which are published at the start
+            self.events.append(changes)
+
+    def publish_clock(self) -> None:
+        self.events.append("clock repeated")
+
+    def tick_ended(self, report: TickReport) -> None:
+        self.events += [("late", report.late)] if report.late else []
+        self.events += [("gone", controller) for controller in report.gone]

@@ -12,9 +12,9 @@ from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotModel, RobotSpec
 from aro_robocop_goto_as.shapes import Box, Cylinder
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.agenda import Due
 from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.load import find_world, load_world
 from aro_robocop_goto_as.world.model import World

@@ -13,7 +13,7 @@ from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.param_docs import NODES, Documented, documents
 from aro_robocop_goto_as.param_loading import declared, from_dict
 from aro_robocop_goto_as.ros.client.params import BridgeParams
-from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.params import SimParams
 
 CHECKOUT = Path(ROOT)
 

@@ -12,7 +12,7 @@ from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D
 from aro_robocop_goto_as.param_loading import from_dict
 from aro_robocop_goto_as.robot.base_controller import limits_from
 from aro_robocop_goto_as.sensors.imu import FORCE
-from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]

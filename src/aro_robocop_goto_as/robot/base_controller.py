@@ -26,7 +26,7 @@ class LimitParams:
     )
 
 
-class Limits(NamedTuple):
+class BaseLimits(NamedTuple):
     """Limits of one base controller."""
 
     max_v: float  # [m/s]
@@ -36,7 +36,7 @@ class Limits(NamedTuple):
     timeout: float  # [s] after which a command is no longer in force; 0: never, as in Gazebo
 
 
-def limits_from(params: LimitParams, figures: ModelFigures) -> Limits:
+def limits_from(params: LimitParams, figures: ModelFigures) -> BaseLimits:
     """The limits of a model: the parameters' where they are given, else the model's own figures."""
     firmware = params.velocity_limits == "firmware"
     pairs = (
@@ -46,7 +46,7 @@ def limits_from(params: LimitParams, figures: ModelFigures) -> Limits:
         (params.max_angular_acceleration, figures.max_angular_acceleration),
         (params.cmd_vel_timeout, figures.cmd_vel_timeout),
     )
-    return Limits(*(own if given is None else given for given, own in pairs))
+    return BaseLimits(*(own if given is None else given for given, own in pairs))
 
 
 def require_finite(twist: Twist2D) -> None:
@@ -57,7 +57,7 @@ def require_finite(twist: Twist2D) -> None:
         )
 
 
-def clamped(twist: Twist2D, limits: Limits) -> Twist2D:
+def clamped(twist: Twist2D, limits: BaseLimits) -> Twist2D:
     """A velocity command within the velocity limits; CommandError for NaN or infinity."""
     require_finite(twist)
     v, w = max(-limits.max_v, min(limits.max_v, twist.v)), max(-limits.max_w, min(limits.max_w, twist.w))

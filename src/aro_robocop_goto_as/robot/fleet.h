@@ -6,7 +6,7 @@
 
 #define ARO_FLEET_VERSION 3
 
-/* Columns of limits, as in Limits of base_controller.py */
+/* Columns of limits, as in BaseLimits of base_controller.py */
 enum { MAX_V, MAX_W, MAX_DV, MAX_DW, TIMEOUT, LIMITS };
 
 struct fleet {

@@ -9,7 +9,7 @@ import numpy as np
 from .. import compiled
 from ..compiled import address, members
 from ..geometry import Pose2D, Twist2D
-from .base_controller import Limits
+from .base_controller import BaseLimits
 from .model import Pair, RobotModel
 
 VERSION = 3  # of the structures that the library's functions take, as in fleet.h
@@ -61,12 +61,12 @@ class Fleet:
     wheel_angles, wheel_speeds: (n, 2) left and right [rad], never wrapped, and [rad/s]
     """
 
-    def __init__(self, models: Sequence[RobotModel], limits: Sequence[Limits], radii: Sequence[float]) -> None:
+    def __init__(self, models: Sequence[RobotModel], limits: Sequence[BaseLimits], radii: Sequence[float]) -> None:
         """`limits` and `radii` [m]: one for each model."""
         n = len(models)
         self.models = tuple(models)
         self.limits = tuple(limits)
-        self._limits = np.array(limits, dtype=float).reshape(n, len(Limits._fields))
+        self._limits = np.array(limits, dtype=float).reshape(n, len(BaseLimits._fields))
         self.wheels = np.array([(model.wheel_radius, model.wheel_separation) for model in models]).reshape(n, 2)
         self.radii = np.array(radii, dtype=float)
         self.commands, self.commanded_at, self.velocities = np.zeros((n, 2)), np.zeros(n), np.zeros((n, 2))
@@ -74,7 +74,7 @@ class Fleet:
         self.wheel_angles, self.wheel_speeds = np.zeros((n, 2)), np.zeros((n, 2))
         self.struct = FleetStruct(
             n,
-            address("limits", self._limits, (n, len(Limits._fields))),
+            address("limits", self._limits, (n, len(BaseLimits._fields))),
             address("wheels", self.wheels, (n, 2)),
             *(
                 address(name, getattr(self, name), (n, columns) if columns else (n,))

@@ -1,4 +1,4 @@
-/* The errors of laser scanners: exact distances -> ranges.
+/* The errors of lidars: exact distances -> ranges.
  *
  * The structures are mirrored in lidar.py and sensor.py; ARO_CASTER_VERSION changes with it.
  */

@@ -1,4 +1,4 @@
-"""Planar laser scanners by name: beams, ranges, noise and the quirks of their drivers."""
+"""Lidars by name: beams, ranges, noise and the quirks of their drivers."""
 
 import math
 from dataclasses import dataclass, replace

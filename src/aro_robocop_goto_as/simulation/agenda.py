@@ -5,7 +5,7 @@ from typing import Dict, Mapping, Tuple
 
 from ..sensors.catalog import Sensors
 from ..sensors.sensor import Prepared, Robots, Site
-from ..sim_params import Rates
+from .params import Rates
 from .schedule import CLOCK, CONTROL, due_next
 
 Subscriptions = Mapping[str, Robots]  # topic of a sensor -> the robots for which somebody subscribes to it

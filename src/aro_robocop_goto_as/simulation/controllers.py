@@ -1,27 +1,32 @@
 """Velocity commands: applied at once, or in lockstep at the end of the control tick; until then, time is held."""
 
-from typing import Dict, Optional
+from typing import Dict, NamedTuple, Optional
 
 from ..geometry import STANDSTILL, Twist2D
-from ..sim_params import LockstepParams
-from .jobs import Clock
+from .jobs import WallClock
 from .lockstep import Connected, ControllerId, Lockstep, TickReport
+from .params import LockstepParams
 from .simulator import Simulator
 
 
+class _Pending(NamedTuple):
+    placed: int  # how often the robot had been placed by then; what it was commanded before counts no more
+    commands: Dict[str, Twist2D]  # the newest command since the last tick, by the name of its node
+
+
 class Controllers:
-    """The nodes that command robots. The simulation's owner calls all methods.
+    """The nodes that command robots. The thread that runs the simulator calls all methods.
 
     A control tick in lockstep: begin_tick(), then jobs are run for as long as hold() says, then end_tick().
     """
 
-    def __init__(self, simulator: Simulator, params: LockstepParams, clock: Clock) -> None:
+    def __init__(self, simulator: Simulator, params: LockstepParams, clock: WallClock) -> None:
         self.in_lockstep = params.enabled
         self.lockstep = Lockstep(params.lockstep_timeout, clock)
         self._rate = simulator.params.rates.control_rate
         self._simulator = simulator
-        # In lockstep the newest command of each node since the last tick, by robot and by the node's name:
-        self._pending: Dict[int, Dict[str, Twist2D]] = {}
+        self._pending: Dict[int, _Pending] = {}  # by robot, in lockstep
+        self._resets = simulator.resets  # before the present tick
 
     def command(self, controller: ControllerId, twist: Optional[Twist2D]) -> None:
         """A velocity command that does not name a tick. In lockstep it is applied at the end of the current tick.
@@ -45,7 +50,14 @@ class Controllers:
 
     def _keep(self, controller: ControllerId, twist: Optional[Twist2D]) -> None:
         if twist is not None:
-            self._pending.setdefault(controller.robot, {})[controller.node] = twist
+            self._commands(controller.robot)[controller.node] = twist
+
+    def _commands(self, robot: int) -> Dict[str, Twist2D]:
+        """A robot's pending commands since it was placed."""
+        pending, placed = self._pending.get(robot), self._simulator.placed[robot]
+        if pending is None or pending.placed != placed:
+            pending = self._pending[robot] = _Pending(placed, {})
+        return pending.commands
 
     @property
     def tick(self) -> int:
@@ -54,29 +66,29 @@ class Controllers:
 
     def begin_tick(self, connected: Connected) -> None:
         """Simulated time has reached a control tick, and is held until the controllers have answered."""
+        self._resets = self._simulator.resets
         self.lockstep.begin_tick(self.tick, connected)
 
     def hold(self, connected: Connected) -> float:
-        """How long to hold simulated time at this tick [s, wall] before asking again; 0: it may go on."""
+        """How long to hold simulated time at this tick [s, wall] before asking again; 0: it may go on.
+
+        After a reset nobody is waited for any more.
+        """
+        if self._simulator.resets != self._resets:
+            return 0.0
         return self.lockstep.hold(self.tick, connected)
 
     def end_tick(self) -> TickReport:
         """Apply the commands of the tick; where several nodes command one robot, the last one by name wins."""
-        report, pending, self._pending = self.lockstep.report, self._pending, {}
+        report = self.lockstep.report
         for robot, node in report.gone:
-            commands = pending.setdefault(robot, {})
+            commands = self._commands(robot)
             commands.pop(node, None)
             if not commands:
                 commands[node] = STANDSTILL
-        for robot, commands in pending.items():
-            self._simulator.command(commands[max(commands)], robot)
-        return report
-
-    def restart(self) -> None:
-        """Forget pending commands, because the simulation was reset."""
-        self.lockstep.release()
+        for robot in list(self._pending):
+            commands = self._commands(robot)
+            if commands:
+                self._simulator.command(commands[max(commands)], robot)
         self._pending.clear()
-
-    def drop_command(self, robot: int) -> None:
-        """Forget a pending command, because its robot was placed elsewhere, at rest."""
-        self._pending.pop(robot, None)
+        return report

@@ -7,9 +7,9 @@ from ..raycast.free_places import free_place, free_places
 from ..robot.base_controller import limits_from
 from ..robot.fleet import Fleet
 from ..robot.model import RobotModel, RobotSpec
-from ..sim_params import RobotParams, SimParams
 from ..world.model import World
 from ..world.spawn_texts import parse_count, parse_robots, parse_spawn
+from .params import RobotParams, SimParams
 from .simulator import Simulator
 
 

@@ -8,22 +8,25 @@ from typing import Callable, TypeVar
 
 from ..errors import RobocopError, ShutdownError
 
-Job = Callable[[], object]
 # Not SimpleQueue: before Python 3.12 its get(timeout) blocks for ever when a signal handler runs past the timeout.
-Queue = queue.Queue  # of Job
+Queue = queue.Queue  # of jobs
 CALL_POLL = 0.1  # [s, wall] between two checks for a shutdown while another thread waits for its job
 
 T = TypeVar("T")
 
 
-class Clock:
+class WallClock:
     """The machine's monotonic clock, and how the owner waits; tests use a clock that they move."""
 
     def now(self) -> float:
         """Seconds from an arbitrary origin."""
         return time.monotonic()
 
-    def get(self, jobs: "Queue[Job]", timeout: float) -> Job:
+    def sleep(self, seconds: float) -> None:
+        """Wait, whatever jobs come."""
+        time.sleep(seconds)
+
+    def get(self, jobs: "Queue[Callable[[], object]]", timeout: float) -> Callable[[], object]:
         """The next job; raises queue.Empty when none has come within `timeout` [s]."""
         return jobs.get(timeout=timeout) if timeout > 0.0 else jobs.get_nowait()
 
@@ -31,12 +34,12 @@ class Clock:
 class Jobs:
     """Any thread may use `post`, `call` and `wait_for`; all else is for the owner's thread."""
 
-    def __init__(self, clock: Clock, stopped: Callable[[], bool] = lambda: False) -> None:
+    def __init__(self, clock: WallClock, stopped: Callable[[], bool] = lambda: False) -> None:
         """`stopped`: whether the owner's loop has ended, so that nobody will run jobs any more."""
         self._clock = clock
         self._stopped = stopped
-        self._queue: Queue[Job] = queue.Queue()
-        self.post: Callable[[Job], None] = self._queue.put  # has the owner run a job
+        self._queue: Queue[Callable[[], object]] = queue.Queue()
+        self.post: Callable[[Callable[[], object]], None] = self._queue.put  # has the owner run a job
 
     def call(self, function: Callable[[], T]) -> T:
         """Have the owner run a function; returns what it returns, raises the RobocopError that it raises.

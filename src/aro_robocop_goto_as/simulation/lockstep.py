@@ -10,7 +10,7 @@ SILENCE_TIMEOUT.
 from dataclasses import dataclass, field
 from typing import AbstractSet, Callable, Dict, List, NamedTuple, Set
 
-from .jobs import Clock
+from .jobs import WallClock
 
 SILENCE_TIMEOUT = 0.02  # [s, wall] for a node that is not expected to answer
 EXPECTED_AFTER = 2  # ticks that a node has answered in a row
@@ -54,7 +54,7 @@ class _Controller:
 class Lockstep:
     """Which controllers simulated time waits for at a tick, and for how long."""
 
-    def __init__(self, timeout: float, clock: Clock) -> None:
+    def __init__(self, timeout: float, clock: WallClock) -> None:
         """`timeout` [s, wall] for the answer of a node that is expected to answer."""
         self.timeout = timeout
         self.misses = 0  # answers of expected nodes that did not come in time
@@ -63,7 +63,6 @@ class Lockstep:
         self._controllers: Dict[ControllerId, _Controller] = {}
         self._warned: Set[ControllerId] = set()
         self._held_since = self._next_check = 0.0  # [s, wall]
-        self._is_released = False
 
     def commanded(self, name: ControllerId, tick: int) -> None:
         """Note a velocity command that arrived after the tick before `tick`, from a node that names no ticks."""
@@ -88,19 +87,15 @@ class Lockstep:
 
     def begin_tick(self, tick: int, connected: Connected) -> None:
         """Simulated time has reached a tick, and is held for the nodes that are connected."""
-        self.report, self._is_released = TickReport(), False
+        self.report = TickReport()
         self._held_since = self._clock.now()
         self._update(tick, connected())
-
-    def release(self) -> None:
-        """Wait for nobody any more at this tick."""
-        self._is_released = True
 
     def hold(self, tick: int, connected: Connected) -> float:
         """How long to hold simulated time at a tick [s, wall] before asking again; 0: nobody is waited for."""
         while True:
             missing = [known for known in self._controllers.values() if known.last < tick]
-            if self._is_released or not missing:
+            if not missing:
                 return 0.0
             now = self._clock.now()
             timeout = self.timeout if any(known.is_expected for known in missing) else SILENCE_TIMEOUT

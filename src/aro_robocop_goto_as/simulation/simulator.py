@@ -1,5 +1,6 @@
 """Robots in a world, advanced and measured step by step in simulated time."""
 
+import enum
 import math
 from typing import Optional, Sequence, Set
 
@@ -15,10 +16,19 @@ from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
 from ..sensors.catalog import Sensors
 from ..sensors.sensor import Site
-from ..sim_params import SimParams
 from ..world.model import Occupancy, World
 from .agenda import Agenda, Due, Subscriptions
+from .params import SimParams
 from .schedule import stamp_ns
+
+
+class Change(enum.Enum):
+    """What has changed other than by a step."""
+
+    PAUSED = "paused or resumed"
+    RESET = "robots are at their spawn poses, with odometry at zero"
+    FRAMES = "map -> odom of a robot has jumped"
+    WORLD = "the world was replaced"
 
 
 class Simulator:
@@ -36,6 +46,9 @@ class Simulator:
         self.site = Site(world, engine, self.rate, params.world.seed)
         self.sensors = Sensors(params.sensors, self.site, params.topics.localization == "truth")
         self._agenda = Agenda(self.sensors, self.site, params.rates)
+        self.changes: Set[Change] = set()  # since somebody emptied it
+        self.resets = 0
+        self.placed = [0] * len(robots)  # how often each robot was placed; the reset places all of them
         self._newly_placed: Set[int] = set()
         self.moving = False  # whether any obstacle of the world moves
         self.reset()
@@ -162,6 +175,7 @@ class Simulator:
         self._agenda.prepare()
         self.engine.change_world(self.world, self.world_time)
         self._newly_placed.update(range(len(self.robots)))
+        self.changes.add(Change.WORLD)
 
     def place(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
         """Place a robot elsewhere, at rest. Wheel odometry continues, so map -> odom absorbs the jump.
@@ -172,6 +186,8 @@ class Simulator:
         odom_from_footprint = self.sensors.odometry.pose_now(robot)
         self.engine.place(robot, world_from_footprint)
         self._newly_placed.add(robot)
+        self.placed[robot] += 1
+        self.changes.add(Change.FRAMES)
         if not self.sensors.odometry.in_world:
             self.sensors.odometry.map_from_odom[robot] = compose(world_from_footprint, inverse(odom_from_footprint))
 
@@ -206,6 +222,9 @@ class Simulator:
             sensor.reset(spawns)
         self.site.reset(self.seed if seed is None else seed)
         self._newly_placed = set(range(len(self.robots)))
+        self.placed = [count + 1 for count in self.placed]
+        self.resets += 1
+        self.changes |= {Change.RESET, Change.FRAMES}
 
     def close(self) -> None:
         """Free the engine and the renderer."""

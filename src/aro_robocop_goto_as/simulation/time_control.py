@@ -4,8 +4,8 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Callable, Optional
 
-from ..sim_params import TimeParams
-from .jobs import Clock
+from .jobs import WallClock
+from .params import TimeParams
 
 PAUSED_PERIOD = 0.1  # [s, wall] between repetitions of /clock while paused, for nodes that start meanwhile
 MAX_HOLD = 0.5  # [s, wall] between two checks for other due work while the wall clock is waited for
@@ -95,7 +95,7 @@ class Pacer:
 class TimeControl:
     """Pause, span and pacing. A `step` is the simulator's count; its owner runs jobs for as long as hold() says."""
 
-    def __init__(self, params: TimeParams, rate: int, clock: Clock) -> None:
+    def __init__(self, params: TimeParams, rate: int, clock: WallClock) -> None:
         """`rate` [Hz] of the steps."""
         self.paused = params.start_paused
         self.pacer = Pacer(params.real_time_factor, rate, clock.now)

@@ -32,7 +32,7 @@ class Run:
 
     def __init__(self, job: Job, stage: Stage) -> None:
         self.job, self.plan, self.stage, self.topics = job, job.plan, stage, stage.topics
-        self.services = Services(stage.simulation)
+        self.services = Services(stage.sim)
         self.ended: Set[str] = set()
         self.known: Dict[str, int] = {}  # goal -> status
         self.parts: DefaultDict[str, List[Any]] = defaultdict(list)  # by field of the record

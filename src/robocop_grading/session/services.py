@@ -2,36 +2,26 @@
 
 import contextlib
 import io
-from typing import Any, Callable, Dict, List, Tuple, TypeVar
+from typing import Any, Callable, Dict, List, Tuple
 
-from aro_robocop_goto_as.simulation.jobs import Clock, Jobs
-from aro_robocop_goto_as.simulation.running import Simulation
+from aro_robocop_goto_as.simulation.simulator import Simulator
 
 from ..agent import wire
 from .topics import header
 
 REFUSAL = "the judge decides where the robot and the models of the world are"  # to calls that change them
-T = TypeVar("T")
-
-
-class _AtOnce(Jobs):
-    """Runs jobs at once: the simulation's owner itself answers the node's requests."""
-
-    def call(self, function: Callable[[], T]) -> T:
-        """Run a function."""
-        return function()
 
 
 class Services:
     """The services that the node can call."""
 
-    def __init__(self, simulation: Simulation) -> None:
-        simulation.jobs = _AtOnce(Clock())
+    def __init__(self, simulator: Simulator) -> None:
         self._offered: Dict[str, Tuple[Any, Callable[[Any], Any]]] = {}
         with contextlib.suppress(ImportError):
             from aro_robocop_goto_as.ros.sim.gazebo_services import GazeboServices
 
-            GazeboServices(simulation, None, REFUSAL, self._offer)
+            # The thread that owns the simulator answers the node's requests itself.
+            GazeboServices(simulator, lambda function: function(), None, REFUSAL, self._offer)
 
     def _offer(self, name: str, kind: Any, answer: Callable[[Any], Any]) -> None:
         self._offered[name] = kind, answer

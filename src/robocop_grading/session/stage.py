@@ -19,10 +19,9 @@ from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.sensors.lidar import SCAN
 from aro_robocop_goto_as.sensors.odometry import ODOM
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.agenda import Due, Subscriptions
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.running import Simulation
+from aro_robocop_goto_as.simulation.params import SimParams
 
 from ..handout import AHEAD
 from ..plan import Block
@@ -47,7 +46,6 @@ class Stage:
     def __init__(self) -> None:
         robot = RobotSpec("", load_model(PARAMS.robots.model, share()), Pose2D())
         self.sim = make_simulator(PARAMS, world_of(ORIGIN), [robot])
-        self.simulation = Simulation(self.sim)
         published = StepTopics(self.sim)
         self.robot = published.robots[0]
         self._messages = StepMessages(self.sim, published)
@@ -85,15 +83,15 @@ class Stage:
         self.odd_scan = odd_scan
         self.push(None)
         self._site = site
-        self.simulation.change_world(lambda _: world_of(site, blocks))
-        self.simulation.reset(PARAMS.world.seed)
-        self.simulation.place(site, anywhere=True)
+        self.sim.change_world(world_of(site, blocks))
+        self.sim.reset(PARAMS.world.seed)
+        self.sim.place(site)
         self._publish_frames()
         self.bag.write_scenery()
 
     def teleport(self, odom_from_footprint: Pose2D) -> None:
         """Place the robot elsewhere on its site; its odometry continues as if nothing had happened."""
-        self.simulation.place(compose(self._site, odom_from_footprint), anywhere=True)
+        self.sim.place(compose(self._site, odom_from_footprint))
         self._publish_frames()
 
     def command(self, twist: Twist2D) -> None:

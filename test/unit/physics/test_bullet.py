@@ -14,7 +14,7 @@ from aro_robocop_goto_as.physics.bullet import BulletEngine
 from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
 from aro_robocop_goto_as.robot.base_controller import limits_from
 from aro_robocop_goto_as.robot.fleet import Fleet
-from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.params import SimParams
 
 PLACE = Pose2D(1.0, -2.0, 2.0)
 

@@ -11,14 +11,14 @@ from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.physics.kinematic import KinematicEngine
-from aro_robocop_goto_as.robot.base_controller import Limits
+from aro_robocop_goto_as.robot.base_controller import BaseLimits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.shapes import Box, Cylinder, Plane
 from aro_robocop_goto_as.world.model import Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion
 
 RADIUS = 0.105
-AT_ONCE = Limits(math.inf, math.inf, math.inf, math.inf, 0.0)
+AT_ONCE = BaseLimits(math.inf, math.inf, math.inf, math.inf, 0.0)
 
 
 def _world(*obstacles: Obstacle) -> World:

@@ -15,8 +15,8 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.free_places import free_place, occupant
 from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.shapes import Box, Cylinder
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import robots_from
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.world.load import load_world
 from aro_robocop_goto_as.world.model import Obstacle, World
 

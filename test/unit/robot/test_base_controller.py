@@ -8,20 +8,20 @@ from support import model_named
 
 from aro_robocop_goto_as.errors import CommandError
 from aro_robocop_goto_as.geometry import Twist2D
-from aro_robocop_goto_as.robot.base_controller import Limits, clamped, limits_from
-from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.robot.base_controller import BaseLimits, clamped, limits_from
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 
 @pytest.mark.parametrize("bad", [Twist2D(math.nan, 0.0), Twist2D(0.0, math.inf), Twist2D(-math.inf, math.nan)])
 def test_command_that_is_not_finite_is_refused_with_its_values(bad: Twist2D) -> None:
     with pytest.raises(CommandError, match=f"linear.x {bad.v} m/s, angular.z {bad.w} rad/s"):
-        clamped(bad, Limits(0.22, 2.84, 2.5, 3.2, 0.5))
+        clamped(bad, BaseLimits(0.22, 2.84, 2.5, 3.2, 0.5))
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_command_beyond_the_velocity_limits_is_clamped_to_them(sign: float) -> None:
-    limits = Limits(0.22, 2.84, 2.5, 3.2, 0.5)
+    limits = BaseLimits(0.22, 2.84, 2.5, 3.2, 0.5)
     assert clamped(Twist2D(sign * 0.3, sign * 1.0), limits) == Twist2D(sign * 0.22, sign * 1.0)
     assert clamped(Twist2D(sign * 0.1, sign * 5.0), limits) == Twist2D(sign * 0.1, sign * 2.84)
 

@@ -11,8 +11,8 @@ from aro_robocop_goto_as.errors import RobocopError, RobotModelError
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.robot.catalog import load_figures
 from aro_robocop_goto_as.robot.model import RobotSpec
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 BURGER_BOX = math.sqrt(0.14 * 0.14 / math.pi)  # [m] radius of the circle of the same area

@@ -11,7 +11,7 @@ from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.sensors.lidar import RangeErrors
 from aro_robocop_goto_as.sensors.lidar_profiles import PROFILES
 from aro_robocop_goto_as.sensors.sensor import Episode
-from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]

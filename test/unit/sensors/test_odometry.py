@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from support import model_named
 
 from aro_robocop_goto_as.geometry import Pose2D
-from aro_robocop_goto_as.robot.base_controller import Limits
+from aro_robocop_goto_as.robot.base_controller import BaseLimits
 from aro_robocop_goto_as.robot.fleet import Fleet
 from aro_robocop_goto_as.sensors.odometry import OdometryParams, WheelOdometry
 
-LIMITS = Limits(1.0, 1.0, 1.0, 1.0, 0.0)
+LIMITS = BaseLimits(1.0, 1.0, 1.0, 1.0, 0.0)
 RADIUS, SEPARATION = 0.033, 0.16
 
 

@@ -23,11 +23,11 @@ def lockstep(end: float, *nodes: ControllerId, **params: object) -> Owner:
 
 def sends(owner: Owner, node: ControllerId, delay: float, twist: Optional[Twist2D] = AHEAD) -> None:
     """Have a node send a command after a delay [s, wall] from now."""
-    owner.post(delay, lambda: owner.simulation.controllers.command(node, twist))
+    owner.post(delay, lambda: owner.running.controllers.command(node, twist))
 
 
 def answers(owner: Owner, node: ControllerId, stamp: int, delay: float, twist: Optional[Twist2D] = AHEAD) -> None:
-    owner.post(delay, lambda: owner.simulation.controllers.answer(node, stamp, twist))
+    owner.post(delay, lambda: owner.running.controllers.answer(node, stamp, twist))
 
 
 def waited(owner: Owner) -> float:
@@ -39,8 +39,8 @@ def waited(owner: Owner) -> float:
 def test_refused_command_leaves_the_previous_one_in_force(sync: str) -> None:
     owner = Owner(1.0, sync=sync)
     owner.nodes = {NODE.node}
-    owner.simulation.controllers.command(NODE, AHEAD)
-    owner.simulation.controllers.command(NODE, None)
+    owner.running.controllers.command(NODE, AHEAD)
+    owner.running.controllers.command(NODE, None)
     owner.run()
     assert owner.simulator.velocity().v == pytest.approx(0.1)
 
@@ -60,7 +60,7 @@ def test_only_a_node_that_is_connected_costs_its_timeout_if_silent_and_is_no_mis
     owner = lockstep(0.55, *nodes)
     owner.run()
     assert waited(owner) == pytest.approx(held)
-    assert owner.events == [] and owner.simulation.controllers.lockstep.misses == 0
+    assert owner.events == [] and owner.running.controllers.lockstep.misses == 0
 
 
 def test_loop_at_the_ticks_rate_is_followed_from_its_third_command_on_however_slow_it_is() -> None:
@@ -68,8 +68,8 @@ def test_loop_at_the_ticks_rate_is_followed_from_its_third_command_on_however_sl
     owner.on_tick = lambda stamp: sends(owner, NODE, 0.01 if stamp <= 2 * TICK else 2.0)
     owner.run()
     assert waited(owner) == pytest.approx(2 * 0.01 + 8 * 2.0)
-    assert owner.simulation.controllers.lockstep.misses == 0
-    assert owner.simulation.controllers.lockstep.expected() == [NODE]
+    assert owner.running.controllers.lockstep.misses == 0
+    assert owner.running.controllers.lockstep.expected() == [NODE]
 
 
 def test_loop_at_half_the_rate_costs_a_silence_at_each_tick_between() -> None:
@@ -77,16 +77,16 @@ def test_loop_at_half_the_rate_costs_a_silence_at_each_tick_between() -> None:
     owner.on_tick = lambda stamp: None if stamp // TICK % 2 else sends(owner, NODE, 0.01)
     owner.run()
     assert waited(owner) == pytest.approx(5 * 0.01 + 5 * SILENCE_TIMEOUT)
-    assert owner.events == [] and owner.simulation.controllers.lockstep.misses == 0
+    assert owner.events == [] and owner.running.controllers.lockstep.misses == 0
 
 
 def test_loop_that_pauses_costs_one_timeout_and_one_warning_and_is_followed_again() -> None:
     owner = lockstep(4.05, NODE)
     owner.on_tick = lambda stamp: None if 5 <= stamp // TICK < 35 else sends(owner, NODE, 0.01)
     owner.run()
-    assert owner.events == [("late", [NODE])] and owner.simulation.controllers.lockstep.misses == 1
+    assert owner.events == [("late", [NODE])] and owner.running.controllers.lockstep.misses == 1
     assert waited(owner) == pytest.approx(4 * 0.01 + 3.0 + 29 * SILENCE_TIMEOUT + 6 * 0.01)
-    assert owner.simulation.controllers.lockstep.expected() == [NODE]
+    assert owner.running.controllers.lockstep.expected() == [NODE]
 
 
 @pytest.mark.parametrize("first, second", [(NODE, OTHER), (OTHER, NODE)])
@@ -108,18 +108,18 @@ def test_node_that_answers_ticks_is_waited_for_from_its_first_answer_on() -> Non
     owner.on_tick = lambda stamp: answers(owner, ANSWERING, stamp, 0.01 if stamp == TICK else 2.0)
     owner.run()
     assert waited(owner) == pytest.approx(0.01 + 4 * 2.0)
-    assert owner.simulation.controllers.lockstep.misses == 0 and owner.events == []
-    assert owner.simulation.controllers.lockstep.expected() == [ANSWERING]
+    assert owner.running.controllers.lockstep.misses == 0 and owner.events == []
+    assert owner.running.controllers.lockstep.expected() == [ANSWERING]
     assert owner.simulator.world_from_footprint().x > 0.03
 
 
 def test_node_that_answers_while_time_stands_still_is_waited_for_at_the_first_tick() -> None:
     owner = lockstep(0.15, ANSWERING, start_paused=True)
     answers(owner, ANSWERING, 0, 0.5, None)
-    owner.post(1.0, lambda: owner.simulation.set_paused(False))
+    owner.post(1.0, lambda: owner.running.set_paused(False))
     owner.on_tick = lambda stamp: answers(owner, ANSWERING, stamp, 2.0)
     owner.run()
-    assert waited(owner) == pytest.approx(3.0) and owner.simulation.controllers.lockstep.misses == 0
+    assert waited(owner) == pytest.approx(3.0) and owner.running.controllers.lockstep.misses == 0
 
 
 def test_answering_node_that_hangs_costs_one_timeout_and_is_expected_after_two_answers() -> None:
@@ -131,7 +131,7 @@ def test_answering_node_that_hangs_costs_one_timeout_and_is_expected_after_two_a
 
     owner.on_tick = answer
     owner.run()
-    assert owner.events == [("late", [ANSWERING])] and owner.simulation.controllers.lockstep.misses == 1
+    assert owner.events == [("late", [ANSWERING])] and owner.running.controllers.lockstep.misses == 1
     assert waited(owner) == pytest.approx(2 * 0.01 + 3.0 + SILENCE_TIMEOUT + 2 * 0.01 + 2 * 2.0)
 
 
@@ -150,7 +150,7 @@ def test_commands_of_an_answering_node_are_ignored() -> None:
 
 def test_answer_to_a_tick_that_time_has_not_reached_is_ignored() -> None:
     owner = lockstep(0.35, ANSWERING)
-    controllers = owner.simulation.controllers
+    controllers = owner.running.controllers
     controllers.answer(ANSWERING, 0, None)
     controllers.answer(ANSWERING, 100 * 10**9, AHEAD)
     owner.on_tick = lambda stamp: answers(owner, ANSWERING, stamp, 0.1, None)
@@ -185,10 +185,10 @@ def test_reset_while_time_is_held_waits_for_nobody_at_this_tick() -> None:
 
     def answer(stamp: int) -> None:
         if stamp == TICK:
-            owner.post(0.01, owner.simulation.reset)
+            owner.post(0.01, owner.simulator.reset)
         answers(owner, ANSWERING, stamp, 0.1, None)
 
     owner.on_tick = answer
     owner.run()
-    assert owner.simulation.controllers.lockstep.misses == 0
+    assert owner.running.controllers.lockstep.misses == 0
     assert waited(owner) == pytest.approx(0.01 + 2 * 0.1)

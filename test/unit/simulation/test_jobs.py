@@ -6,12 +6,12 @@ from typing import List
 import pytest
 
 from aro_robocop_goto_as.errors import ShutdownError, WorldError
-from aro_robocop_goto_as.simulation.jobs import Clock, Jobs
+from aro_robocop_goto_as.simulation.jobs import Jobs, WallClock
 
 
 def test_call_from_another_thread_returns_the_jobs_result_or_raises_its_error() -> None:
     done = threading.Event()
-    jobs = Jobs(Clock(), done.is_set)
+    jobs = Jobs(WallClock(), done.is_set)
     outcomes: List[object] = []
 
     def refuse() -> None:
@@ -35,7 +35,7 @@ def test_call_from_another_thread_returns_the_jobs_result_or_raises_its_error() 
 
 
 def test_queued_jobs_are_run_and_those_that_they_post_are_left_for_later() -> None:
-    jobs, ran = Jobs(Clock(), lambda: False), []
+    jobs, ran = Jobs(WallClock(), lambda: False), []
     jobs.post(lambda: jobs.post(lambda: ran.append("later")))
     jobs.post(lambda: ran.append("queued"))
     jobs.run_queued()

@@ -10,8 +10,8 @@ from support import driven
 from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.sensors.lidar import SCAN
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.world.load import load_world
 
 PLANE = "<include><uri>model://ground_plane</uri></include>"

@@ -10,8 +10,8 @@ from support import world_named
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.shapes import Box, Cylinder
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.world.model import Obstacle, World
 from aro_robocop_goto_as.world.scripted_motion import Motion
 

@@ -6,8 +6,8 @@ from support import model_named, world_named
 from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.robot.model import RobotModel
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import robots_from
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.world.spawn_texts import parse_spawn
 
 

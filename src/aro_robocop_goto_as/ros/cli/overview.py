@@ -9,7 +9,7 @@ from ...errors import RobocopError
 from ...names import COMMAND_VARIABLE, SERVER, WEB, robocop
 from ...param_loading import from_dict
 from ...probes import master
-from ...sim_params import SimParams
+from ...simulation.params import SimParams
 from ...web.access import default_host, url
 from ...web.params import WebParams
 

@@ -13,7 +13,7 @@ from ...geometry import Pose2D
 from ...param_loading import declared, from_dict
 from ...reading import reading
 from ...robot.model_names import urdf_of
-from ...sim_params import SimParams
+from ...simulation.params import SimParams
 from ...suggestions import did_you_mean
 from ...world.load import RANDOM, find_world
 from ...world.spawn_texts import parse_count, parse_robots, parse_spawn

@@ -13,7 +13,7 @@ from ...geometry import Twist2D
 from ...names import prefixed
 from ...robot.base_controller import require_finite
 from ...simulation.lockstep import ControllerId
-from ...simulation.running import Simulation
+from ...simulation.running import RunningSimulator
 from .. import convert
 from ..connected_nodes import publishers_of, sender
 
@@ -39,13 +39,13 @@ class CommandTopics:
     rospy's threads post what arrives to the simulation's owner, who calls the methods.
     """
 
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
-        robots = simulation.simulator.robots
+    def __init__(self, running: RunningSimulator) -> None:
+        self._running = running
+        robots = running.simulator.robots
         self._subscribers = [self._subscribe(number, it.name, it.model.name) for number, it in enumerate(robots)]
 
     def _subscribe(self, robot: int, name: str, model: str) -> List[rospy.Subscriber]:
-        jobs, controllers = self._simulation.jobs, self._simulation.controllers
+        jobs, controllers = self._running.jobs, self._running.controllers
 
         def on_command(message: Twist) -> None:
             jobs.post(partial(controllers.command, ControllerId(robot, sender(message)), _velocity(message)))

@@ -15,11 +15,11 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from ...errors import WorldError
 from ...geometry import STANDSTILL, Pose3D, compose3
-from ...simulation.running import Simulation
+from ...simulation.simulator import Simulator
 from ...world.edit import with_model_at
 from .. import convert
 from .gazebo_topics import State, models, raised, relative, robot_names, state_of
-from .services import REFUSALS, Offer, Services, serve
+from .services import REFUSALS, Offer, SimulatorServices, serve
 
 Fields = Dict[str, Any]  # of a response
 REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, what its client can do instead
@@ -44,21 +44,24 @@ class GazeboServices:
 
     def __init__(
         self,
-        simulation: Simulation,
-        services: Optional[Services],
+        simulator: Simulator,
+        call: Callable[[Callable[[], Any]], Any],
+        services: Optional[SimulatorServices],
         refusal: str = "",
         offer: Offer = rospy.Service,
     ) -> None:
-        """Without the simulator's services pausing and resetting do nothing; changes are refused with this reason."""
-        self._simulation, self._offer = simulation, offer
-        self._simulator = simulation.simulator
+        """`call`: has the owner's thread run a function, and returns its result.
+
+        Without the simulator's services pausing and resetting do nothing; changes are refused with this reason.
+        """
+        self._simulator, self._call, self._offer = simulator, call, offer
         self._services, self._refusal = services, refusal
-        self._names = robot_names(simulation.simulator)
-        self._serve_empty("pause_physics", lambda: simulation.set_paused(True))
-        self._serve_empty("unpause_physics", lambda: simulation.set_paused(False))
+        self._names = robot_names(simulator)
+        self._serve_empty("pause_physics", lambda: self._changes().set_paused(True))
+        self._serve_empty("unpause_physics", lambda: self._changes().set_paused(False))
         # Gazebo's reset_simulation also sets time back to zero; here time goes on.
-        self._serve_empty("reset_simulation", simulation.reset)
-        self._serve_empty("reset_world", simulation.reset)
+        self._serve_empty("reset_simulation", simulator.reset)
+        self._serve_empty("reset_world", simulator.reset)
         for name, kind, answer in (
             ("get_model_state", srv.GetModelState, self._model_state),
             ("get_world_properties", srv.GetWorldProperties, self._world_properties),
@@ -76,15 +79,15 @@ class GazeboServices:
     def _serve_empty(self, name: str, action: Callable[[], Any]) -> None:
         def respond(_request: Any) -> EmptyResponse:
             if self._services is not None:
-                self._simulation.jobs.call(action)
+                self._call(action)
             return EmptyResponse()
 
         self._offer(f"/gazebo/{name}", Empty, respond)
 
     def _in_owner(self, answer: Callable[[Any], Fields]) -> Callable[[Any], Fields]:
-        return lambda request: self._simulation.jobs.call(lambda: answer(request))
+        return lambda request: self._call(lambda: answer(request))
 
-    def _changes(self) -> Services:
+    def _changes(self) -> SimulatorServices:
         if self._services is None:
             raise WorldError(self._refusal)
         return self._services
@@ -118,9 +121,11 @@ class GazeboServices:
         name, done = requested.model_name, "SetModelState: set model state done"
         if name not in self._names:
             self._model(name)  # an error lists robots as well
-            self._simulation.change_world(lambda world: with_model_at(world, name, target))
+            self._simulator.change_world(with_model_at(self._simulator.world, name, target))
             return {"status_message": done}
-        self._simulation.place(target.on_plane(), self._names.index(name))
+        robot, pose = self._names.index(name), target.on_plane()
+        self._simulator.require_room(pose, robot)
+        self._simulator.place(pose, robot)
         moving = convert.from_twist_msg(requested.twist) != STANDSTILL
         ignored = "; its twist is ignored, only /cmd_vel moves a robot" if moving else ""
         return {"status_message": done + ignored}
@@ -129,12 +134,12 @@ class GazeboServices:
 
     def _on_model_state(self, message: ModelState) -> None:
         try:
-            self._simulation.jobs.call(lambda: self._set_model_state(message))
+            self._call(lambda: self._set_model_state(message))
         except REFUSALS as error:
             rospy.logwarn_throttle(5.0, "/gazebo/set_model_state: %s", error)
 
     def _spawn(self, request: Any) -> Fields:
-        pose = self._simulation.jobs.call(lambda: self._in_world(request.initial_pose, request.reference_frame))
+        pose = self._call(lambda: self._in_world(request.initial_pose, request.reference_frame))
         changes = self._changes()
         if request.model_name in self._names:
             raise WorldError(f"model name [{request.model_name}] is already used by a robot")

@@ -10,8 +10,8 @@ from ...errors import PlaceError, WorldError
 from ...names import PACKAGE
 from ...raycast.free_places import occupant
 from ...robot.catalog import load_model
-from ...sim_params import SimParams
 from ...simulation.factory import make_simulator, robots_from
+from ...simulation.params import SimParams
 from ...simulation.simulator import Simulator
 from ...world.load import RANDOM, find_world, load_world
 from ...world.model import World

@@ -26,7 +26,7 @@ from ...sensors.lidar_profiles import LidarProfile
 from ...sensors.odometry import JointEncoders, WheelOdometry
 from ...sensors.sensor import Sensor
 from ...sensors.sonar import Sonar
-from ...sim_params import FrameNames
+from ...simulation.params import FrameNames
 from .. import convert
 from ..publishing.packed import PackedMessage, counter
 

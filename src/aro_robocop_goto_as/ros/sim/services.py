@@ -14,7 +14,7 @@ from aro_robocop_goto_as.srv import DeleteModel, MoveModel, Reset, SetPose, Spaw
 from ...errors import FrameError, PlaceError, WorldError
 from ...geometry import Pose2D, Pose3D, compose
 from ...names import prefixed
-from ...simulation.running import Simulation
+from ...simulation.running import RunningSimulator
 from ...simulation.schedule import stamp_ns
 from ...world.edit import requested_model, with_model, with_model_at, without_model
 from ...world.model import World
@@ -48,17 +48,17 @@ def serve(
     offer(name, kind, respond)
 
 
-class Services:
+class SimulatorServices:
     """Files are read in the service's thread; all else is done in the owner's, between two steps."""
 
-    def __init__(self, simulation: Simulation) -> None:
-        p = simulation.simulator.params
-        self._simulation, self._simulator = simulation, simulation.simulator
-        self._call = simulation.jobs.call
+    def __init__(self, running: RunningSimulator) -> None:
+        p = running.simulator.params
+        self._running, self._simulator = running, running.simulator
+        self._call = running.jobs.call
         self._frames = p.frames
-        self._names: List[str] = [robot.name for robot in simulation.simulator.robots]
-        serve("~pause", Trigger, lambda _: {"message": self._call(lambda: self._set_paused(True))})
-        serve("~unpause", Trigger, lambda _: {"message": self._call(lambda: self._set_paused(False))})
+        self._names: List[str] = [robot.name for robot in running.simulator.robots]
+        serve("~pause", Trigger, lambda _: {"message": self._call(lambda: self.set_paused(True))})
+        serve("~unpause", Trigger, lambda _: {"message": self._call(lambda: self.set_paused(False))})
         serve("~step", Step, self._on_step)
         serve("~reset", Reset, self._on_reset)
         serve("~spawn_model", SpawnModel, lambda r: {"message": self.spawn(r.name, r.xml, r.file, _pose_of(r))})
@@ -67,25 +67,26 @@ class Services:
         serve("~set_pose", SetPose, self._on_set_pose, begin="pose refused: ")
         for robot, name in enumerate(self._names if p.topics.has_initialpose else []):
             self._subscribe(robot, name)
-        self._factor: float = simulation.time_control.pacer.factor  # asked for last; the owner's thread may lag behind
+        self._factor: float = running.time_control.pacer.factor  # asked for last; the owner's thread may lag behind
         rospy.set_param("~real_time_factor", self._factor)  # its server begins here
         self._reconfigure = Server(SimConfig, self._on_reconfigure)
 
     # -- time --
 
-    def _set_paused(self, paused: bool) -> str:
-        self._simulation.set_paused(paused)
+    def set_paused(self, paused: bool) -> str:
+        """Pause or resume simulated time, in the owner's thread; returns what was done."""
+        self._running.set_paused(paused)
         return "{} at {:.3f} s".format("paused" if paused else "running", self._simulator.time)
 
     def _on_step(self, request: Any) -> Dict[str, Any]:
         """Blocks this service's thread until the span is over; the owner's loop goes on meanwhile."""
-        time, rate = self._simulation.time_control, self._simulator.rate
+        time, rate = self._running.time_control, self._simulator.rate
         if not (math.isfinite(request.duration) and 0.0 <= request.duration <= MAX_SPAN):
             return self._step_refused(f"duration {request.duration}: expected 0 to {MAX_SPAN:g} s")
         ended = self._call(lambda: time.begin_span(request.duration, self._simulator.steps))
         if ended is None:
             return self._step_refused("another step request is in progress")
-        stamp = convert.to_time(stamp_ns(self._simulation.jobs.wait_for(ended), rate))
+        stamp = convert.to_time(stamp_ns(self._running.jobs.wait_for(ended), rate))
         state = "paused" if time.paused else "running"
         return {"message": f"{state} at {stamp.to_sec():.6f} s", "stamp": stamp}
 
@@ -100,12 +101,12 @@ class Services:
         return {"message": self._call(lambda: self._reset(request.seed or None))}
 
     def _reset(self, seed: Optional[int]) -> str:
-        self._simulation.reset(seed)
+        self._simulator.reset(seed)
         seed, time = self._simulator.seed, self._simulator.time
         return f"robots at their spawn poses, odometry zero, seed {seed}, at {time:.3f} s"
 
     def _on_reconfigure(self, config: Any, _level: int) -> Any:
-        time = self._simulation.time_control
+        time = self._running.time_control
         factor, current = config.real_time_factor, self._factor
         if not 0.0 <= factor < math.inf:
             rospy.logerr("real_time_factor: expected a number, 0 or more, got %g; keeping %g", factor, current)
@@ -113,13 +114,13 @@ class Services:
         elif factor != current:
             rospy.loginfo("real-time factor %g, was %g", factor, current)
             self._factor = factor
-            self._simulation.jobs.post(lambda: time.set_real_time_factor(factor, self._simulator.steps))
+            self._running.jobs.post(lambda: time.set_real_time_factor(factor, self._simulator.steps))
         return config
 
     # -- the world --
 
     def _change(self, edit: Callable[[World], World]) -> None:
-        self._call(lambda: self._simulation.change_world(edit))
+        self._call(lambda: self._simulator.change_world(edit(self._simulator.world)))
 
     def spawn(self, name: str, xml: str, file: str, pose: Pose3D) -> str:
         """Add a model, as requested_model reads it; returns what was done. WorldError where that is not possible."""
@@ -151,7 +152,7 @@ class Services:
         rospy.Subscriber(
             prefixed(name, "initialpose"),
             PoseWithCovarianceStamped,
-            lambda message: self._simulation.jobs.post(lambda: place(message)),
+            lambda message: self._running.jobs.post(lambda: place(message)),
         )
 
     def _on_set_pose(self, request: Any) -> Dict[str, Any]:
@@ -168,7 +169,8 @@ class Services:
         FrameError for any other frame; PlaceError if something is there.
         """
         target = self._in_world(robot, frame.lstrip("/"), convert.from_pose_msg(pose, unset_is_level=True))
-        self._simulation.place(target, robot)
+        self._simulator.require_room(target, robot)
+        self._simulator.place(target, robot)
         return target
 
     def _in_world(self, robot: int, frame: str, pose: Pose2D) -> Pose2D:

@@ -11,7 +11,7 @@ from aro_robocop_goto_as.msg import SimStatus
 from ...geometry import Pose2D, compose
 from ...names import SIMULATOR, absolute
 from ...simulation.lockstep import Connected, ControllerId, TickReport
-from ...simulation.running import Simulation
+from ...simulation.running import RunningSimulator
 from ...simulation.simulator import Simulator
 from ...simulation.time_control import FactorReport
 from .. import convert
@@ -25,10 +25,10 @@ MAX_FREE_FACTOR = 20.0
 class StatusTopics:
     """One report per second of wall time, and one whenever the set of controllers changes."""
 
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
-        self._report = FactorReport(0.0, simulation.time_control.pacer.factor, 0.0, 0.0)
-        self._running = 0  # reports while simulated time ran
+    def __init__(self, running: RunningSimulator) -> None:
+        self._running = running
+        self._report = FactorReport(0.0, running.time_control.pacer.factor, 0.0, 0.0)
+        self._reports = 0  # while simulated time ran
         self._behind: List[float] = []  # the factors reached in those in which the machine was too slow
         self._drivers: List[ControllerId] = []
         self._has_warned_of_full_speed = False
@@ -38,22 +38,22 @@ class StatusTopics:
 
     def report(self) -> bool:
         """Publish what is due; cheap when nothing is. Returns whether a second has passed."""
-        simulator = self._simulation.simulator
-        report = self._simulation.time_control.pacer.report(simulator.steps)
+        simulator = self._running.simulator
+        report = self._running.time_control.pacer.report(simulator.steps)
         if report is not None:
             self._report = report
             self._factor.publish(report.reached)
             self._watch_slip()
             self.publish()
-            if not self._simulation.time_control.paused:
+            if not self._running.time_control.paused:
                 self._count(report)
-        elif self._simulation.controllers.lockstep.expected() != self._drivers:
+        elif self._running.controllers.lockstep.expected() != self._drivers:
             self.publish()
         return report is not None
 
     def _count(self, report: FactorReport) -> None:
         """Warn the first time that the machine is too slow; the summary at the end says how often it was."""
-        self._running += 1
+        self._reports += 1
         if not report.behind:
             return
         self._behind.append(report.reached)
@@ -68,16 +68,16 @@ class StatusTopics:
     def _summarize(self) -> None:
         mean, slowest = sum(self._behind) / len(self._behind), min(self._behind)
         text = "the machine was too slow in %d of %d s: real-time factor %.2f on average then, %.2f at the slowest"
-        rospy.logwarn(text, len(self._behind), self._running, mean, slowest)
+        rospy.logwarn(text, len(self._behind), self._reports, mean, slowest)
 
     def _outruns_controllers(self) -> bool:
         """Return whether simulated time may run too fast for controllers, for which it does not wait."""
-        factor = self._simulation.time_control.pacer.factor
-        return not (self._simulation.controllers.in_lockstep or 0.0 < factor <= MAX_FREE_FACTOR)
+        factor = self._running.time_control.pacer.factor
+        return not (self._running.controllers.in_lockstep or 0.0 < factor <= MAX_FREE_FACTOR)
 
     def warn_of_full_speed(self, connected: Connected) -> None:
         """Warn once of controllers that may be too slow for simulated time that does not wait for them."""
-        time_control = self._simulation.time_control
+        time_control = self._running.time_control
         if not self._outruns_controllers() or self._has_warned_of_full_speed or time_control.paused:
             return
         nodes = sorted({controller.node for controller in connected()})
@@ -97,7 +97,7 @@ class StatusTopics:
 
         Where map -> odom follows the truth or is left to a localization, odometry's error does not stay.
         """
-        simulator = self._simulation.simulator
+        simulator = self._running.simulator
         if simulator.params.topics.localization != "static":
             return
         for index, robot in enumerate(simulator.robots):
@@ -120,17 +120,17 @@ class StatusTopics:
             rospy.logwarn("lockstep: %s disconnected; the robot is stopped", self._name(controller))
         for controller in tick.late:
             text = "lockstep: no answer from %s within %g s; it is waited for again once it answers at each tick"
-            rospy.logwarn(text, self._name(controller), self._simulation.controllers.lockstep.timeout)
+            rospy.logwarn(text, self._name(controller), self._running.controllers.lockstep.timeout)
 
     def _name(self, controller: ControllerId) -> str:
         """A controller's name in messages: its node, and among several robots also the robot that it commands."""
-        robots = self._simulation.simulator.robots
+        robots = self._running.simulator.robots
         return f"{controller.node} driving {robots[controller.robot].name}" if len(robots) > 1 else controller.node
 
     def publish(self) -> None:
         """Publish the newest report now."""
-        simulation, simulator, report = self._simulation, self._simulation.simulator, self._report
-        self._drivers = simulation.controllers.lockstep.expected()
+        running, simulator, report = self._running, self._running.simulator, self._report
+        self._drivers = running.controllers.lockstep.expected()
         status = SimStatus(
             stamp=convert.to_time(simulator.stamp_ns),
             world=simulator.world.name,
@@ -138,14 +138,14 @@ class StatusTopics:
             slipped=[simulator.robots[index].name for index in sorted(self._slipped)],
             seed=simulator.seed,
             drive=simulator.params.engine.drive,
-            sync="lockstep" if simulation.controllers.in_lockstep else "free",
-            paused=simulation.time_control.paused,
-            factor_asked=simulation.time_control.pacer.factor,
+            sync="lockstep" if running.controllers.in_lockstep else "free",
+            paused=running.time_control.paused,
+            factor_asked=running.time_control.pacer.factor,
             factor_reached=report.reached,
             step_time=report.step_time,
             behind=report.lag,
             drivers=sorted(map(self._name, self._drivers)),
-            lockstep_misses=simulation.controllers.lockstep.misses,
+            lockstep_misses=running.controllers.lockstep.misses,
         )
         self._status.publish(status)
 

@@ -5,7 +5,7 @@ from sdf_files import SPHERE, collision, model, world_file
 
 from aro_robocop_goto_as.param_loading import from_dict
 from aro_robocop_goto_as.ros.sim import loading
-from aro_robocop_goto_as.sim_params import SimParams
+from aro_robocop_goto_as.simulation.params import SimParams
 
 
 @pytest.mark.parametrize(

@@ -16,21 +16,21 @@ RATE = 240  # [Hz]
 def warnings_at(
     monkeypatch: pytest.MonkeyPatch, asked: float, reached: List[float], in_lockstep: bool = False
 ) -> List[str]:
-    """The warnings of a simulation that reaches these factors, one a second, while another one is asked for."""
-    clock, warnings, simulation = FakeClock(), [], MagicMock()
-    simulation.time_control.pacer = Pacer(asked, RATE, clock.now)
-    simulation.time_control.paused = False
-    simulation.controllers.in_lockstep = in_lockstep
-    simulation.simulator.steps = 0
+    """The warnings of a simulator that reaches these factors, one a second, while another one is asked for."""
+    clock, warnings, running = FakeClock(), [], MagicMock()
+    running.time_control.pacer = Pacer(asked, RATE, clock.now)
+    running.time_control.paused = False
+    running.controllers.in_lockstep = in_lockstep
+    running.simulator.steps = 0
     monkeypatch.setattr(status, "publisher", MagicMock())
     monkeypatch.setattr(status.StatusTopics, "publish", lambda _: None)
     monkeypatch.setattr(status.rospy, "on_shutdown", MagicMock())
     monkeypatch.setattr(status.rospy, "logwarn", lambda text, *values: warnings.append(text % values))
-    topics: Any = status.StatusTopics(simulation)
+    topics: Any = status.StatusTopics(running)
     for factor in reached:
         clock.time += 1.0
-        simulation.simulator.steps += round(factor * RATE)
-        simulation.time_control.pacer.ahead(simulation.simulator.steps)
+        running.simulator.steps += round(factor * RATE)
+        running.time_control.pacer.ahead(running.simulator.steps)
         assert topics.report()
     return warnings
 
@@ -42,12 +42,12 @@ def warnings_at(
 def test_a_controller_at_full_speed_without_lockstep_is_warned_of_once(
     monkeypatch: pytest.MonkeyPatch, factor: float, in_lockstep: bool, nodes: int, count: int
 ) -> None:
-    warnings, simulation = [], MagicMock()
-    simulation.time_control.pacer.factor, simulation.time_control.paused = factor, False
-    simulation.controllers.in_lockstep = in_lockstep
+    warnings, running = [], MagicMock()
+    running.time_control.pacer.factor, running.time_control.paused = factor, False
+    running.controllers.in_lockstep = in_lockstep
     monkeypatch.setattr(status, "publisher", MagicMock())
     monkeypatch.setattr(status.rospy, "logwarn", lambda text, *values: warnings.append(text % values))
-    topics: Any = status.StatusTopics(simulation)
+    topics: Any = status.StatusTopics(running)
     for _ in range(2):
         topics.warn_of_full_speed(lambda: {ControllerId(0, "/node")} if nodes else set())
     words = "/node may not keep up; use sync:=lockstep" if factor else "/node can't keep up; use sync:=lockstep"

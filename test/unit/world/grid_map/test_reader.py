@@ -11,8 +11,8 @@ from map_files import room, write_map
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.robot.model import RobotSpec
-from aro_robocop_goto_as.sim_params import SimParams
 from aro_robocop_goto_as.simulation.factory import make_simulator
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.world.grid_map.reader import edges_of_cells
 from aro_robocop_goto_as.world.load import load_world
 

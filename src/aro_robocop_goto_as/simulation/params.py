@@ -9,11 +9,11 @@ key is simply left out.
 from dataclasses import dataclass
 from typing import Any, List, Mapping, Optional
 
-from .param_loading import MODELS_OWN, frame_problems, from_dict, group, parameter, positive
-from .physics.engine import EngineParams
-from .robot.base_controller import LimitParams
-from .robot.model_names import DEFAULT_MODEL
-from .sensors.catalog import SensorParams
+from ..param_loading import MODELS_OWN, frame_problems, from_dict, group, parameter, positive
+from ..physics.engine import EngineParams
+from ..robot.base_controller import LimitParams
+from ..robot.model_names import DEFAULT_MODEL
+from ..sensors.catalog import SensorParams
 
 
 @dataclass(frozen=True)
