@@ -10,7 +10,7 @@ from .checks.verdict import Kind
 from .faults import Faults
 from .grades import CheckResult, Grade, Outcome
 from .plan import CheckPlan, Plan
-from .reasons import Reasons, first_reasons
+from .reasons import Reasons
 from .record import Record
 from .texts import sentences
 
@@ -92,7 +92,7 @@ def _with_reasons(results: List[CheckResult], records: Mapping[str, Record], fau
     failures = {name: it.failure for name, it in failed.items() if it.failure is not None}
     where = {name: records[it.scenario] for name, it in failed.items() if it.scenario in records}
     table = Reasons(failures, where, faults)
-    first = first_reasons({it.name: table.of(it.name) for it in results if it.outcome is not Outcome.PASSED})
+    first = table.first([it.name for it in results if it.outcome is not Outcome.PASSED])
     return [replace(it, follows="" if first.get(it.name, it.name) == it.name else first[it.name]) for it in results]
 
 

@@ -1,10 +1,9 @@
 """For each failure of one part the check with which it began, by the table of what follows from what."""
 
-from itertools import takewhile
-from typing import Dict, List, Mapping, Sequence
+from typing import Callable, Dict, List, Mapping, Sequence
 
-from .checks.consequences import FOLLOWS, Row
-from .checks.verdict import Failed, Kind
+from .checks.consequences import FOLLOWS
+from .checks.verdict import Failed, Kind, without_figures
 from .faults import Faults
 from .record import Record
 
@@ -12,7 +11,7 @@ UNRECORDED = (Kind.NOT_REACHED, Kind.INCOMPLETE)  # a row for any kind does not 
 
 
 class Reasons:
-    """Applies the table to the failures of one part: (scenario, failure) by check, in the plan's order."""
+    """Applies the table to the failures of one part, by check in the plan's order."""
 
     def __init__(self, failures: Mapping[str, Failed], records: Mapping[str, Record], faults: Faults) -> None:
         """`records`: by check, the record of the scenario where it failed."""
@@ -24,19 +23,23 @@ class Reasons:
         kind = failure.kind if failure else Kind.NOT_REACHED
         rows = [row for row in FOLLOWS if not row.later or name in row.later.split()]
         rows = [row for row in rows if row.kind is kind or (row.kind is None and kind not in UNRECORDED)]
-        return [earlier for row in rows for earlier in self._earlier(row, name) if self._holds(row, name, earlier)]
+        rows = [row for row in rows if row.earlier in self._failures and row.earlier != name]
+        return [row.earlier for row in rows if row.when is None or self._holds(row.when, name, row.earlier)]
 
-    def _earlier(self, row: Row, name: str) -> List[str]:
-        if not row.earlier:
-            return list(takewhile(lambda it: it != name, self._failures))
-        return [row.earlier] if row.earlier in self._failures and row.earlier != name else []
-
-    def _holds(self, row: Row, name: str, earlier: str) -> bool:
-        if row.when is None:
-            return True
-        what = f"whether {name} follows from {earlier}"
+    def _holds(self, when: Callable[[Record, Failed, Failed], bool], name: str, earlier: str) -> bool:
+        record = self._records.get(name, Record("", ""))
         both = self._failures[name], self._failures[earlier]
-        return self._faults.tried(what, False, row.when, self._records.get(name, Record("", "")), *both)
+        return self._faults.tried(f"whether {name} follows from {earlier}", False, when, record, *both)
+
+    def first(self, names: Sequence[str]) -> Dict[str, str]:
+        """For each of the checks the one with which it began; what begins with the same cause is one mistake."""
+        first = first_reasons({name: self.of(name) for name in names})
+        same: Dict[str, str] = {}  # by cause
+        causes = {name: without_figures(failure.cause) for name, failure in self._failures.items()}
+        for name, cause in causes.items():
+            if first[name] == name:
+                same.setdefault(cause, name)
+        return {name: same[causes[it]] if it in causes else it for name, it in first.items()}
 
 
 def first_reasons(reasons: Mapping[str, Sequence[str]]) -> Dict[str, str]:

@@ -1,12 +1,25 @@
 """What follows from what: one table, whose conditions look at what happened and at what the server reported."""
 
-from typing import Callable, NamedTuple, Optional
+from bisect import bisect_right
+from typing import Callable, NamedTuple, Optional, Sequence, TypeVar
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
-from ..record import Feedback, Goal, Record, active_until, errors_at, feedback_of, results_of, samples_between
+from ..record import (
+    Command,
+    Feedback,
+    Goal,
+    Record,
+    Sample,
+    active_until,
+    errors_at,
+    feedback_of,
+    results_of,
+    samples_between,
+)
 from .output import NO_STATE_LOGGED, UNCAUGHT, logged
-from .verdict import Failed, Kind, without_figures
+from .verdict import Failed, Kind
 
+T = TypeVar("T", Feedback, Sample)
 MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and driving are right
 ENOUGH = 4  # fewer commands show nothing
 MAX_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
@@ -17,11 +30,6 @@ ITERATION = 0.15  # [s] of a server's loop, with a tick of the recording
 def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
     """Return whether both failures are of the same kind."""
     return failure.kind is not None and failure.kind is earlier.kind
-
-
-def same_cause(_record: Record, failure: Failed, earlier: Failed) -> bool:
-    """Return whether both failures have the same cause, in which only figures differ."""
-    return without_figures(failure.cause) == without_figures(earlier.cause)
 
 
 def end_of(record: Record, failure: Failed) -> float:
@@ -47,7 +55,8 @@ def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether an exception was logged before a goal ended otherwise than it should."""
-    return failure.kind is not None and logged(record, UNCAUGHT, end_of(record, failure))
+    end = failure.time if failure.kind is Kind.MOVES_FIRST else end_of(record, failure)
+    return failure.kind is not None and logged(record, UNCAUGHT, end)
 
 
 def none_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -71,12 +80,16 @@ def died_before(record: Record, failure: Failed, _earlier: Failed) -> bool:
     return bool(record.deaths) and failure.goal is not None and silent(record, failure.goal)
 
 
+def came(record: Record, failure: Failed) -> bool:
+    """Return whether the robot came to the goal before the failure."""
+    goal = failure.goal
+    there = samples_between(record, goal.time, failure.time) if goal else []
+    return goal is not None and any(errors_at(it, goal)[0] < BELIEVED for it in there)
+
+
 def astray(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether the server was working on the goal, and the robot never came to it."""
-    goal = failure.goal
-    if goal is None or silent(record, goal):
-        return False
-    return all(errors_at(it, goal)[0] >= GOAL_RADIUS for it in samples_between(record, goal.time, failure.time))
+    return failure.goal is not None and not silent(record, failure.goal) and not came(record, failure)
 
 
 def believed(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -92,32 +105,44 @@ def unaware(record: Record, failure: Failed, _earlier: Failed) -> bool:
     return not any(it.position_error < GOAL_RADIUS and it.time < end - ITERATION for it in own)
 
 
-def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Return whether the commands are right for the angle_error that the server itself reported.
+def unaware_there(record: Record, failure: Failed, earlier: Failed) -> bool:
+    """Return whether the robot came to the goal, and the server never reported a position_error that says so."""
+    return came(record, failure) and unaware(record, failure, earlier)
 
-    If that angle is wrong, the motion is wrong because of it.
-    """
+
+def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
+    """Return whether the commands that are wrong for the true angle_error are right for the one that was reported."""
     goal = failure.goal
     if goal is None or failure.kind is Kind.TOO_FAR:
         return False
-    own = feedback_of(record, goal)
-    end = active_until(record, goal)
-    fits, number = [], 0
+    own = _latest(feedback_of(record, goal))
+    true = _latest(record.samples)
+    fits = []
     for command in record.commands:
-        if not own or not goal.time <= command.time < end:
-            continue
-        while number + 1 < len(own) and own[number + 1].time <= command.time + 1e-6:
-            number += 1
-        if own[number].time <= command.time + 1e-6:
-            fits.append(_fits(own[number], command.v, command.w))
+        if goal.time <= command.time < active_until(record, goal):
+            told, there = own(command.time), true(command.time)
+            if told and there and not _fits(errors_at(there, goal)[1], command):
+                fits.append(_fits(told.angle_error, command))
     return len(fits) >= ENOUGH and sum(fits) >= (1.0 - MAX_OTHERS) * len(fits)
 
 
-def _fits(own: Feedback, v: float, w: float) -> bool:
-    turning = abs(v) < 1e-3 and w * own.angle_error > 0.0
-    if abs(own.angle_error) > HEADING_TOLERANCE + MARGIN:
+def _latest(timed: Sequence[T]) -> Callable[[float], Optional[T]]:
+    """The last one of some messages or samples that is not later than a time [s]."""
+    times = [it.time for it in timed]
+
+    def latest(time: float) -> Optional[T]:
+        number = bisect_right(times, time + 1e-6)
+        return timed[number - 1] if number else None
+
+    return latest
+
+
+def _fits(angle_error: float, command: Command) -> bool:
+    """Return whether a command is right for an angle_error [rad]."""
+    turning = abs(command.v) < 1e-3 and command.w * angle_error > 0.0
+    if abs(angle_error) > HEADING_TOLERANCE + MARGIN:
         return turning
-    return v > 0.0 or (abs(own.angle_error) > HEADING_TOLERANCE - MARGIN and turning)
+    return command.v > 0.0 or (abs(angle_error) > HEADING_TOLERANCE - MARGIN and turning)
 
 
 def too_early_elsewhere(_record: Record, _failure: Failed, earlier: Failed) -> bool:
@@ -140,7 +165,7 @@ class Row(NamedTuple):
 
     later: str  # names of checks; empty: every check
     kind: Optional[Kind]  # None: any kind, of a scenario that was recorded
-    earlier: str  # name of a check; empty: each check that comes earlier in the plan
+    earlier: str  # name of a check
     when: Optional[Callable[[Record, Failed, Failed], bool]] = None  # the later check's record, and both failures
 
 
@@ -152,7 +177,6 @@ CLICKS = "forwards_goal reports_status cancels_older waits_for_server goal_frame
 
 # A failure, or a check that is not reached, follows from the first row that applies to it.
 FOLLOWS = (
-    Row("", Kind.INCOMPLETE, "", alike),
     # The node does not start, raises an exception, or dies.
     Row("", Kind.NOT_REACHED, "action_server"),
     Row("no_exception stays_alive", None, "action_server", starting),
@@ -174,8 +198,8 @@ FOLLOWS = (
     Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_rate", unaware),
     Row(ENDINGS, Kind.TOO_FAR, "feedback_position", believed),
     Row(ENDINGS, Kind.SUCCEEDED, "feedback_position", believed),
-    Row(ENDINGS, Kind.NO_RESULT, "feedback_position", misled),
-    Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_position", misled),
+    Row(ENDINGS, Kind.NO_RESULT, "feedback_position", unaware_there),
+    Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_position", unaware_there),
     Row(f"{ENDINGS} turns_to_goal drives_straight", None, "feedback_angle", misled),
     Row(ENDINGS, Kind.NO_RESULT, "turns_to_goal", astray),
     Row(ENDINGS, Kind.NO_RESULT, "drives_straight", astray),
@@ -196,8 +220,6 @@ FOLLOWS = (
     Row(CLICKS, Kind.NO_REPORT, "bridge_alive"),
     Row("cancels_older waits_for_server goal_frame", None, "forwards_goal", alike),
     Row("goal_frame", None, "cancels_older", alike),
-    # One mistake is told once.
-    Row("", None, "", same_cause),
     # What a check needs to be reached.
     Row("feedback_position feedback_angle", Kind.NOT_REACHED, "feedback_rate"),
     Row("drives_straight", Kind.NOT_REACHED, "turns_to_goal"),

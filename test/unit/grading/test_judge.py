@@ -10,9 +10,20 @@ from grading_records import GOAL, PLAN, RIGHT, changed, commanded, fed_back, gra
 from robocop_grading import record as rec
 from robocop_grading.grades import CheckResult, Outcome
 from robocop_grading.judge import judge
+from robocop_grading.plan import CheckPlan
 from robocop_grading.record import Record
 from robocop_grading.report.write import as_classroom, as_gradescope
 
+SMALL = replace(
+    PLAN,
+    checks=(
+        CheckPlan("action_server", "server", 1.0, ("start",)),
+        CheckPlan("feedback_angle", "server", 1.5, ("left",)),
+        CheckPlan("turns_to_goal", "server", 2.0, ("left",)),
+        CheckPlan("stands_at_end", "server", 0.5, ("left",)),
+        CheckPlan("forwards_goal", "bridge", 4.0, ("click",)),
+    ),
+)
 EARLY = (rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)
 START = replace(RIGHT, name="start")
 CLICK = rec.Click(1.0, "odom", 1.2, -0.4, 1.2, -0.4)
@@ -118,15 +129,18 @@ def test_mistake_that_blocks_most_points_comes_first() -> None:
         "server": {"start": Record("start", "server", up=False)},
         "bridge": {"click": Record("click", "bridge", clicks=(CLICK,), marks={"clients": 0.0})},
     }
-    first, second = judge("anna", PLAN, records, {}).mistakes[:2]
-    assert (first.check.name, first.points, len(first.followers)) == ("action_server", 4.9, 19)
-    assert second.check.name == "forwards_goal" and second.points < first.points
+    first, second = judge("anna", SMALL, records, {}).mistakes
+    assert (first.check.name, first.points, len(first.followers)) == ("action_server", 5.0, 3)
+    assert (second.check.name, second.points) == ("forwards_goal", 4.0)
 
 
 def test_mistakes_are_sorted_by_the_points_that_they_and_what_follows_from_them_cost() -> None:
     wrong = replace(MISLED, samples=tuple(replace(sample, v=0.2) for sample in MISLED.samples))
-    found = [(mistake.check.name, mistake.points, len(mistake.followers)) for mistake in graded(wrong).mistakes]
-    assert found == [("feedback_angle", 0.7, 1), ("stands_at_end", 0.15, 0)]
+    found = [
+        (mistake.check.name, mistake.points, len(mistake.followers))
+        for mistake in judge("anna", SMALL, {"server": {"left": wrong}}, {}).mistakes
+    ]
+    assert found == [("feedback_angle", 3.5, 1), ("stands_at_end", 0.5, 0)]
 
 
 def test_check_that_passed_names_the_first_scenario_that_it_examined() -> None:
@@ -135,11 +149,15 @@ def test_check_that_passed_names_the_first_scenario_that_it_examined() -> None:
 
 
 def test_interrupted_scenario_fails_its_checks_with_the_reason_and_the_other_part_is_not_graded() -> None:
-    grade = graded(START, problem="time-out: it was at left")
+    grade = judge("anna", SMALL, {"server": {"start": START}}, {"server": "time-out: it was at left"})
     outcomes = {check.name: check.outcome for check in grade.checks}
-    assert (outcomes["action_server"], outcomes["reaches_goal"]) == (Outcome.PASSED, Outcome.FAILED)
+    assert (outcomes["action_server"], outcomes["turns_to_goal"]) == (Outcome.PASSED, Outcome.FAILED)
     assert all("time-out: it was at left" in check.words for check in grade.checks if check.failure is not None)
-    assert grade.points_available == 5.0 and {check.part for check in grade.checks} == {"server"}
+    assert (
+        grade.points_available == 5.0
+        and len(grade.mistakes) == 1
+        and {check.part for check in grade.checks} == {"server"}
+    )
     assert not grade.all_right
 
 
