@@ -12,6 +12,7 @@ T = TypeVar("T")
 
 MODELS_OWN, PROFILES_OWN = "the model's value", "the profile's value"  # what a default of None stands for
 MIN_POSITIVE, MAX_POSITIVE = 1e-9, 1e6  # bounds of a number that only has to be greater than 0
+TYPES = {bool: "true or false", int: "an integer", float: "a number", str: "a text", dict: "a mapping", list: "a list"}
 MAX_COORDINATE = 1e6  # [m] from the origin; beyond, single-precision messages no longer resolve centimetres
 
 
@@ -68,7 +69,7 @@ def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
     """
     known = declared(cls)
     problems = [
-        f"{name}: missing, expected {kind.__name__}"
+        f"{name}: missing, expected {TYPES.get(kind, kind.__name__)}"
         for name, (spec, kind) in known.items()
         if spec.default is MISSING and name not in raw
     ]
@@ -140,7 +141,7 @@ def _problem(spec: "Field[Any]", kind: Type[Any], value: Any) -> Optional[str]:
 def _expectation(spec: "Field[Any]", kind: Type[Any], value: Any) -> Optional[str]:
     """A text with the value and what was expected instead; None when the value is as expected."""
     if type(value) is not kind:
-        return f"{kind.__name__}, got {type(value).__name__} {value!r}"
+        return f"{TYPES.get(kind, kind.__name__)}, got {value!r}"
     if kind is float and not math.isfinite(value):
         return f"a finite number, got {value!r}"
     low, high, choices = (spec.metadata.get(name) for name in ("low", "high", "choices"))

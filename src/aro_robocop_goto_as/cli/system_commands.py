@@ -3,6 +3,7 @@
 import contextlib
 import math
 import os
+import re
 import time
 from typing import List, NoReturn, Sequence, Tuple
 
@@ -138,6 +139,9 @@ def record(arguments: List[str]) -> None:
     bag += "" if bag.endswith(".bag") else ".bag"
     if os.path.exists(bag):
         refuse(f"record: {bag} exists; give another name")
+    folder = os.path.dirname(os.path.abspath(bag))
+    if not (os.path.isdir(folder) and os.access(folder, os.W_OK)):
+        refuse(f"record: {folder} is no folder that can be written")
     require_settings()
     program.need()
     if not program.is_dry_run():
@@ -167,6 +171,17 @@ def _require_bag(path: str) -> None:
         refuse(f"replay: {path} is not complete; this repairs what is there: ./robocop shell rosbag reindex {path}")
 
 
+def _duration(path: str) -> float:
+    """How long a bag plays [s]: from the first to the last of its chunks, whose times follow the index position."""
+    with open(path, "rb") as file:
+        file.seek(int.from_bytes(file.read(BAG_HEAD).partition(b"index_pos=")[2][:8], "little"))
+        index = file.read()
+    # A field of a record's header: its length, its name, seconds and nanoseconds.
+    times = re.findall(rb"(?s)(?:\x13\0\0\0start|\x11\0\0\0end)_time=(.{4})(.{4})", index)
+    seconds = [int.from_bytes(s, "little") + 1e-9 * int.from_bytes(ns, "little") for s, ns in times] or [0.0]
+    return max(seconds) - min(seconds)
+
+
 def replay(arguments: List[str]) -> None:
     """Play a bag in the web page, and in RViz if a display is available."""
     bag = arguments[0] if arguments else ""
@@ -180,6 +195,8 @@ def replay(arguments: List[str]) -> None:
     given = LaunchArguments.parse(REPLAY, rest, "--start")
     if option or given.value("start"):
         _require_number(given.value("start"), 0.0, "--start: expected seconds after the recording's beginning")
+        if not program.is_dry_run() and float(given.value("start")) > _duration(bag):
+            refuse(f"replay: --start {given.value('start')}: {bag} ends {_duration(bag):.1f} s after its beginning")
     if given.value("rate"):
         _require_number(given.value("rate"), MIN_RATE, f"rate: expected a number from {MIN_RATE:g} on")
     shown = x_display.answers()

@@ -104,6 +104,7 @@ def node(name: str, **options: Any) -> Iterator[None]:
         if not rospy.core.is_shutdown_requested():
             raise
         rospy.logdebug("%s", error)
+        sys.exit()
     finally:  # threads that wait for rospy's end would keep the process alive
         rospy.signal_shutdown("the node has ended")
 

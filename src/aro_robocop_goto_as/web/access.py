@@ -2,8 +2,11 @@
 
 import ipaddress
 import os
+import socket
 from typing import Sequence
 from urllib.parse import urlsplit
+
+from ..errors import WebError
 
 LOOPBACK_NAMES = ("localhost", "localhost.localdomain")
 ANY_ADDRESS = ("0.0.0.0", "::")
@@ -66,3 +69,17 @@ def is_loopback(address: str) -> bool:
         return ipaddress.ip_address(address).is_loopback
     except ValueError:
         return False
+
+
+def require_free(host: str, port: int) -> None:
+    """WebError if the page can't listen at this address and port."""
+    try:
+        for family, kind, protocol, _, address in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM):
+            with socket.socket(family, kind, protocol) as probe:
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                probe.bind(address)
+    except OSError as error:
+        raise WebError(
+            f"can't open {host}:{port}: {error.strerror or error}; choose another address with web_host:=ADDRESS, "
+            "or another port with web_port:=N"
+        ) from error

@@ -35,6 +35,8 @@ def find_world(name_or_path: str, directory: str) -> str:
     entries = os.listdir(directory) if os.path.isdir(directory) else []
     known = sorted(entry[: -len(".sdf")] for entry in entries if entry.endswith(".sdf"))
     hint = LAB_WORLD_HINT if name_or_path in LAB_WORLDS else ""
+    if not is_name and not os.path.isabs(path):
+        hint = f", looked for in {os.getcwd()}: roslaunch starts nodes there, so give it absolute paths"
     raise WorldError(
         f"there is no world '{name_or_path}'{hint} (no file {os.path.abspath(path)}); "
         f"worlds in {directory}: {', '.join(known) or 'none'}{did_you_mean(name_or_path, known)}"

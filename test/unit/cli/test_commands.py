@@ -4,6 +4,7 @@ import re
 import shlex
 import socket
 
+import genpy
 import pytest
 import rosbag
 from command import ROOT, dry_run, robocop, x_server
@@ -154,6 +155,7 @@ def test_a_recording_gets_the_ending_of_a_bag_and_never_overwrites_one(tmp_path,
     assert all(re.fullmatch(words[-1], topic) for topic in ("/scan", "/robot_1/odom", "/robocop_goto_as/result"))
     (tmp_path / "lab.bag").write_text("")
     for arguments, reason in (
+        (["/nosuch/x.bag"], "/nosuch is no folder that can be written"),
         (["lab"], "lab.bag exists; give another name"),
         (["a", "b"], "expected one file, got a b"),
     ):
@@ -179,7 +181,10 @@ def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
     assert "rate: expected a number from 0.01 on" in robocop("replay", "a", "rate:=x", ROBOCOP_DRY_RUN="1").stderr
     assert f"replay: {__file__} is no bag of ROS 1; expected" in robocop("replay", __file__).stderr
     with rosbag.Bag(str(tmp_path / "whole.bag"), "w") as whole:
-        whole.write("/clock", Clock())
+        whole.write("/clock", Clock(), genpy.Time(100))
+        whole.write("/clock", Clock(), genpy.Time(107, 500_000_000))
+    too_late = robocop("replay", f"{tmp_path}/whole.bag", "--start", "7.6").stderr
+    assert too_late == f"robocop: replay: --start 7.6: {tmp_path}/whole.bag ends 7.5 s after its beginning\n"
     (tmp_path / "cut.bag").write_bytes((tmp_path / "whole.bag").read_bytes()[:4200])
     assert "cut.bag is not complete" in robocop("replay", f"{tmp_path}/cut.bag").stderr
     done = robocop("replay", "nowhere.bag")

@@ -46,7 +46,7 @@ def test_unknown_model_is_refused_with_the_known_ones(name: str) -> None:
 @pytest.mark.parametrize(
     "text, expected",
     [
-        ("footprint_radius: 0.1\n", "max_linear_velocity: missing, expected float"),
+        ("footprint_radius: 0.1\n", "max_linear_velocity: missing, expected a number"),
         ("radius: 0.1\n", "radius: unknown parameter"),
         ("- 1\n", "expected lines of 'NAME: VALUE'"),
     ],

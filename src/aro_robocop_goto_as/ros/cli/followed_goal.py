@@ -174,7 +174,7 @@ def _wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float
     if not rospy.get_rostime():
         return standstill()
     silence = f"no answer from {action} for {time.monotonic() - started:.0f} s"
-    return f"{silence}{discovery.hint(action) or '; ' + discovery.advice()}"
+    return f"{silence}{discovery.hint(action, ' --robot NAME chooses it') or '; ' + discovery.advice()}"
 
 
 def follow(client: actionlib.ActionClient, position: Point) -> int:

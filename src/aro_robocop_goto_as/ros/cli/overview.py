@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 from ...errors import RobocopError
 from ...names import COMMAND_VARIABLE, SERVER, WEB, robocop
 from ...param_loading import from_dict
-from ...probes import master
+from ...probes import master, x_display
 from ...simulation.params import SimParams
 from ...web.access import default_host, url
 from ...web.params import WebParams
@@ -26,6 +26,8 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
     The nodes' messages are shown on the screen or go to files in `logs`.
     """
     nodes = {node.name for node in running}
+    if "rviz" in nodes and not x_display.answers():  # its node has said so, and waits
+        nodes.remove("rviz")
     given = simulator or {}
     rows = [] if simulator is None else [*_simulated(given)]
     robots = sorted({node.namespace.strip("/") for node in running if node.name == SERVER} - {""})

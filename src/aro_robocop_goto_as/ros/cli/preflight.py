@@ -4,17 +4,20 @@ import contextlib
 import datetime
 import os
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Dict, Mapping
 
 import rosparam  # with its tags for YAML, such as !degrees
 
 from ...errors import ParameterError
 from ...geometry import Pose2D
+from ...launch_arguments import TRUE
 from ...param_loading import declared, from_dict
 from ...reading import reading
 from ...robot.model_names import urdf_of
 from ...simulation.params import SimParams
 from ...suggestions import did_you_mean
+from ...web.access import default_host, require_free
+from ...web.params import WebParams
 from ...world.load import RANDOM, find_world
 from ...world.spawn_texts import parse_count, parse_robots, parse_spawn
 from ..share import share
@@ -22,14 +25,18 @@ from ..share import share
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
+def _values(given: Mapping[str, str], cls: type) -> Dict[str, Any]:
+    """What roslaunch makes of the arguments that are parameters of a dataclass."""
+    known = declared(cls)
+    return {name: _value(text, known[name][1]) for name, text in given.items() if text and name in known}
+
+
 def check(given: Mapping[str, str]) -> None:
     """RobocopError for values that the simulator would refuse, and for files that the parameter server can't store.
 
     A world is found, but not read. The simulator checks what its parameter files say.
     """
-    known = declared(SimParams)
-    values = {name: _value(text, known[name][1]) for name, text in given.items() if text and name in known}
-    p = from_dict(SimParams, values, "launch arguments")
+    p = from_dict(SimParams, _values(given, SimParams), "launch arguments")
     if p.world.world != RANDOM:
         find_world(p.world.world, os.path.join(share(), "worlds"))
     urdf_of(p.robots.model, share())
@@ -42,8 +49,13 @@ def check(given: Mapping[str, str]) -> None:
     elif text:
         for request in parse_robots(text):
             urdf_of(request.model or p.robots.model, share())
+    if given.get("web") in TRUE:
+        page = from_dict(WebParams, _values(given, WebParams), "launch arguments")
+        require_free(page.web_host if given.get("web_host") else default_host(), page.web_port)
     for name, value in given.items():
-        if name.endswith("config") and value.endswith(".yaml") and os.path.isfile(value):
+        if name.endswith("config") and value.endswith(".yaml") and "$(" not in value:
+            if not os.path.isfile(value):
+                raise ParameterError(f"{name}: there is no file {os.path.abspath(value)}")
             with reading(value, ParameterError, "parameters in YAML"):
                 require_parameters(rosparam.yaml.safe_load(Path(value).read_text(encoding="utf-8")) or {}, value)
 

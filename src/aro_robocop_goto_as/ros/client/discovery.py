@@ -25,8 +25,11 @@ def absence(action: str) -> str:
     return f"waiting for {action}{hint(action)}"
 
 
-def hint(action: str) -> str:
-    """Why a server may be missing, as the end of a sentence; empty if nothing is known."""
+def hint(action: str, choice: str = "") -> str:
+    """Why a server may be missing, as the end of a sentence; empty if nothing is known.
+
+    choice: how the caller's user chooses one of several robots.
+    """
     wanted = rospy.resolve_name(action)
     try:
         servers = graph.action_servers()
@@ -37,7 +40,7 @@ def hint(action: str) -> str:
         return ""
     robot, _, base_name = wanted[1:].rpartition("/")
     named = [name[1:].rpartition("/")[0] for name in others if name.endswith(f"/{base_name}")]
-    question = ": which robot is meant?" if named else ": a misspelt name?"
+    question = f": which robot is meant?{choice}" if named else ": a misspelt name?"
     if robot:
         question = did_you_mean(robot, named) or question
     return f"; there is {' and '.join(map(repr, others))} of the same type{question}"

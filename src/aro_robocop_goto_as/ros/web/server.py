@@ -26,7 +26,7 @@ def start_server(p: WebParams) -> Any:
         import viser
     except ImportError as error:
         raise WebError(f"{error}; run {robocop()} web, which installs what the page needs") from error
-    _require_free(p.web_host, p.web_port)
+    access.require_free(p.web_host, p.web_port)
     with _checked_requests(p), contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
         server = viser.ViserServer(host=p.web_host, port=p.web_port, verbose=False)  # unnamed: it says "Connecting"
     if server.get_port() != p.web_port:  # viser goes on to the next port that is free
@@ -67,16 +67,3 @@ def _checked_requests(p: WebParams) -> Iterator[None]:
         yield
     finally:
         setattr(websockets_server, "serve", serve)  # noqa: B010
-
-
-def _require_free(host: str, port: int) -> None:
-    try:
-        for family, kind, protocol, _, address in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM):
-            with socket.socket(family, kind, protocol) as probe:
-                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-                probe.bind(address)
-    except OSError as error:
-        raise WebError(
-            f"can't open {host}:{port}: {error.strerror or error}; choose another address with web_host:=ADDRESS, "
-            "or another port with web_port:=N"
-        ) from error

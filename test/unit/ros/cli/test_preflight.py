@@ -1,6 +1,7 @@
 """What is refused before a simulator is started."""
 
 import datetime
+import socket
 
 import pytest
 
@@ -23,7 +24,10 @@ from aro_robocop_goto_as.ros.cli.preflight import check, require_parameters
         ({"robots": "red"}, "robots: expected a number, such as 3, or 'NAME X Y [YAW]; ...'"),
         ({"spawn": "here"}, "spawn: expected 'x y'"),
         ({"spawn": "", "x_pos": "left"}, "spawn: expected 'x y'"),
-        ({"seed": "x"}, "launch arguments: seed: expected int, got str 'x'"),
+        ({"seed": "x"}, "launch arguments: seed: expected an integer, got 'x'"),
+        ({"config": "nosuch.yaml"}, "config: there is no file /"),
+        ({"web": "true", "web_port": "abc"}, "launch arguments: web_port: expected an integer, got 'abc'"),
+        ({"web": "1", "web_port": "99999"}, "launch arguments: web_port: expected at most 65535, got 99999"),
         ({"seed": "99999999999"}, "launch arguments: seed: expected at most 2.14748e+09, got 99999999999"),
         ({"real_time_factor": "-1", "moving": "maybe"}, "real_time_factor: expected at least 0, got -1.0; moving: ex"),
         ({"drive": "wheel"}, "launch arguments: drive: expected one of wheels, kinematic, got 'wheel'"),
@@ -33,6 +37,14 @@ def test_what_the_simulator_would_refuse_is_refused(given, words):
     with pytest.raises(RobocopError) as refused:
         check(given)
     assert words in str(refused.value)
+
+
+def test_a_port_that_another_program_has_is_refused_for_the_page():
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(RobocopError, match=f"can't open 127.0.0.1:{port}: Address already in use; choose another"):
+            check({"web": "true", "web_host": "127.0.0.1", "web_port": str(port)})
+        check({"web_port": str(port)})  # which nobody asks for
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,8 @@ BOTH = f"; there is '/blue/{ACTION}' and '/red/{ACTION}' of the same type"
 def test_other_servers_of_the_same_type_are_named_and_the_robot_of_a_similar_name(monkeypatch, servers, action, hint):
     monkeypatch.setattr(graph, "action_servers", servers)
     assert discovery.absence(action) == f"waiting for {action}{hint}"
+    choice = " --robot NAME chooses it" if "which robot" in hint else ""
+    assert discovery.hint(action, " --robot NAME chooses it") == hint + choice
 
 
 @pytest.mark.parametrize("now, up", [(0, False), (5, True)])

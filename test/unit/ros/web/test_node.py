@@ -26,7 +26,7 @@ def test_values_are_taken_as_they_are_written():
     "argument, reason",
     [
         ("web_prot:=1", "did you mean 'web_port'"),
-        ("web_port:=80.5", "web_port: expected int, got float 80.5"),
+        ("web_port:=80.5", "web_port: expected an integer, got 80.5"),
         ("web_port:=70000", "web_port: expected at most 65535"),
         ("web_port:=[", "web_port: "),
         ("web_frame:=/map", "web_frame: expected a frame name"),
