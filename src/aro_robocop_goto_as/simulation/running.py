@@ -13,7 +13,7 @@ MAX_SLEEP = 0.05  # [s, wall] a sleep during which jobs may wait; waiting for jo
 
 
 class Outputs:
-    """What surrounds a running simulator; its methods are called by the thread that runs the loop."""
+    """What a running simulator publishes to, and asks who listens and commands; called by the thread of the loop."""
 
     def subscriptions(self) -> Subscriptions:
         """Topic of a sensor -> the robots for which somebody subscribes to it; asked for at clock ticks."""

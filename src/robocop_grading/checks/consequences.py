@@ -207,6 +207,7 @@ FOLLOWS = (
     Row("feedback_rate turns_to_goal cancel newer_goal", None, "reaches_goal", nothing_came),
     Row("turns_to_goal", Kind.MOVES_FIRST, "already_there", alike),
     Row("stops_at_obstacle", Kind.MOVES_FIRST, "already_there", alike),
+    Row("stops_at_obstacle", Kind.MOVES_FIRST, "turns_to_goal", alike),
     Row("turns_to_goal", None, "stays_alive", died_before),
     Row("odd_scans", None, "stops_at_obstacle", at_wall),
     Row("stops_at_obstacle odd_scans", Kind.MOVING, "stands_at_end"),
