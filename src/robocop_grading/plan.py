@@ -40,7 +40,7 @@ class Step:
     place: Tuple[float, ...] = _numbers(3)  # x, y [m], yaw [rad] in the odom frame of the scenario's start
 
     def conflicts(self) -> List[str]:
-        """Return whether there is not exactly one thing to do, in words."""
+        """What is wrong, in words, unless there is exactly one thing to do."""
         things = sum(map(bool, (self.goal, self.cancel, self.place)))
         return [] if things == 1 else ["expected one of goal, cancel and place in a step"]
 

@@ -47,8 +47,7 @@ def reasons_of(name: str, failures: Mapping[str, Failed], where: Mapping[str, Re
 def first_reasons(reasons: Mapping[str, Sequence[str]]) -> Dict[str, str]:
     """For each check the one with which it began, itself if it has no reasons; `reasons` has the plan's order.
 
-    Checks that are reasons for each other begin with what one of them has as a reason beyond the circle, or else with
-    the first one of them.
+    In a circle of reasons, the first reason outside of the circle counts, or else the circle's first check.
     """
     reached = {name: {name} for name in reasons}
     for found in reached.values():

@@ -86,7 +86,7 @@ def _outwards(centre: Tuple[float, float], spacing: float, reach: float) -> Iter
 
 
 def free_places(world: World, around: Pose2D, count: int, model: RobotModel) -> List[Pose2D]:
-    """Poses on a grid, nearest to its centre first, clear of obstacles and connected to it by free grid edges.
+    """Poses on a grid, nearest to the centre first, clear of obstacles and connected to the centre by free grid edges.
 
     The centre is free_place of the given pose. If there are too few places with CLEARANCE, places where just the
     footprint has room count as well. The places depend on the arguments only. ParameterError if there are fewer than

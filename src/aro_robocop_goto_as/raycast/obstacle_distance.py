@@ -13,7 +13,7 @@ from .cross_section import NO_CIRCLES, NO_SEGMENTS, outline
 
 MIN_HEIGHT = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section
 MAX_SPACING = 0.09  # [m] between cross-sections, from there up to the lidar
-REACH = 0.5  # [m] an obstacle that is nearer is found among the segments within it along y: few, in a map with many
+REACH = 0.5  # [m] only segments within this distance along y are searched at first, and all only if none is nearer
 
 
 def body_heights(model: RobotModel) -> Tuple[float, ...]:

@@ -56,7 +56,7 @@ class Sections:
         return self._sections[height]
 
     def scene(self, mounts: Mounts) -> BeamScene:
-        """What the sensors see that are mounted so, one on each robot; models differ in the height of a sensor."""
+        """What sensors with these mounts see, one on each robot; models differ in the height of a sensor."""
         if mounts not in self._scenes:
             heights = [model.height_of(mount) for model, mount in zip(self._models, mounts)]
             levels, planes = sorted(set(heights)), []

@@ -12,7 +12,7 @@ from ..robot.model import BodyState
 from .sensor import Prepared, RateParams, Robots, Sensor, Site
 
 IMU = "imu"
-FIRST_STREAM = 1  # of the noise of the first robot's IMU, the next one's is 2, ...
+FIRST_STREAM = 1  # of the noise of the first robot's IMU, the next one's is 2, ...; see sensor.py
 
 
 @dataclass(frozen=True)

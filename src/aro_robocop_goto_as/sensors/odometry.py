@@ -14,7 +14,7 @@ from ..robot.fleet import library
 from .sensor import Prepared, RateParams, Robots, Sensor, Site
 
 ODOM, JOINTS = "odom", "joint_states"
-SLIP_STREAM = 2**32  # of the noise; the streams of the other sensors are numbered from 0 up
+SLIP_STREAM = 2**32  # of the noise of all encoders; see sensor.py
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,6 @@ from .sensor import Prepared, RateParams, Robots, Sensor, Site
 SONAR = "sonar"
 HEIGHT = 0.05  # [m] above the floor
 BEAMS = 7  # of a cone of 15 degrees: at 1 m they are 0.04 m apart
-FIRST_STREAM = 2**33  # of the noise of the first robot's sonar, the next one's is one more
 
 
 @dataclass(frozen=True)
@@ -57,6 +56,8 @@ class Sonar(Sensor):
     topic, frame = SONAR, "sonar_link"
     angle = math.radians(15.0)  # of the whole cone
     range_min, range_max = 0.02, 4.0  # [m]
+    radiation_type = 0  # sensor_msgs/Range: ULTRASOUND
+    first_stream = 2**33  # of the noise of the first robot's sonar, the next one's is one more; see sensor.py
 
     def __init__(self, params: SonarParams, site: Site) -> None:
         super().__init__(site, params.sonar_rate if params.sonar else 0)
@@ -74,7 +75,7 @@ class Sonar(Sensor):
     def measure(self, robots: Robots) -> None:
         """Turn the distances along these robots' beams into ranges."""
         for robot in robots:
-            noise = self.site.noise.stream(FIRST_STREAM + robot).normal(0.0, self._noise)
+            noise = self.site.noise.stream(self.first_stream + robot).normal(0.0, self._noise)
             distance = self._distances[robot].min() + noise
             is_near, is_far = distance < self.range_min, distance > self.range_max
             self.ranges[robot] = -math.inf if is_near else math.inf if is_far else distance

@@ -17,7 +17,7 @@ class Due:
 
     clock: bool = False  # a clock tick: /clock is due
     control: bool = False  # a control tick: the controllers' period is over
-    sensors: Subscriptions = field(default_factory=dict)  # those that are due, for whom they are subscribed to
+    sensors: Subscriptions = field(default_factory=dict)  # topic of each sensor that is due -> its subscribed robots
     prepared: Prepared = Prepared([])  # the calls that measure what is due
 
     def of(self, topic: str) -> Robots:

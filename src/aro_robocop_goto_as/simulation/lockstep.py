@@ -2,9 +2,10 @@
 
 A tick is the number of a control period. A node that answers ticks (`tick_answer`) names the tick of each answer. Any
 other node that is connected to cmd_vel has answered a tick when one of its commands has arrived since the tick before.
-A node that has answered two ticks in a row is expected to answer the next tick, and so is a node that answers ticks
-after its first answer. The simulator waits for an expected node until the timeout, and for any other node only for
-SILENCE_TIMEOUT.
+The simulator waits until the timeout for a node that is expected to answer, and only for SILENCE_TIMEOUT for any other
+node. Expected is a node that
+- answers ticks, after its first answer;
+- has answered the last two ticks in a row, by commands.
 """
 
 from dataclasses import dataclass, field
@@ -37,14 +38,14 @@ class TickReport:
 
 @dataclass
 class _Controller:
-    last: int  # newest tick that it has answered
+    last_answered: int  # tick
     answers_ticks: bool = False
     in_a_row: int = 0  # ticks that it has answered without a gap
 
     def note(self, tick: int) -> None:
-        if tick > self.last:
-            self.in_a_row = self.in_a_row + 1 if tick == self.last + 1 else 1
-            self.last = tick
+        if tick > self.last_answered:
+            self.in_a_row = self.in_a_row + 1 if tick == self.last_answered + 1 else 1
+            self.last_answered = tick
 
     @property
     def is_expected(self) -> bool:
@@ -65,7 +66,7 @@ class Lockstep:
         self._held_since = self._next_check = 0.0  # [s, wall]
 
     def commanded(self, name: ControllerId, tick: int) -> None:
-        """Note a velocity command that arrived after the tick before `tick`, from a node that names no ticks."""
+        """Note a velocity command that arrived since tick - 1, from a node that names no ticks."""
         self._controllers.setdefault(name, _Controller(tick - 1)).note(tick)
 
     def answered(self, name: ControllerId, tick: int) -> None:
@@ -94,7 +95,7 @@ class Lockstep:
     def hold(self, tick: int, connected: Connected) -> float:
         """How long to hold simulated time at a tick [s, wall] before asking again; 0: nobody is waited for."""
         while True:
-            missing = [known for known in self._controllers.values() if known.last < tick]
+            missing = [known for known in self._controllers.values() if known.last_answered < tick]
             if not missing:
                 return 0.0
             now = self._clock.now()
@@ -119,7 +120,7 @@ class Lockstep:
     def _give_up(self, tick: int) -> None:
         """Let time go on without the nodes that are missing, none of which is expected at the next tick."""
         for name, known in self._controllers.items():
-            if known.last < tick:
+            if known.last_answered < tick:
                 if known.is_expected:
                     self.misses += 1
                     if name not in self._warned:

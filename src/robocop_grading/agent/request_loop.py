@@ -114,7 +114,7 @@ class RequestLoop:
                 continue
             self._turn.release()
             until_ns, clock_ns = wire.TIMES.unpack_from(body)
-            self._busy = not self._go_on(until_ns, clock_ns, list(wire.messages_of(body)))
+            self._busy = not self._answer(until_ns, clock_ns, list(wire.messages_of(body)))
             self._turn.acquire()
             self.grader.end_probes()
             self._tell()
@@ -136,11 +136,11 @@ class RequestLoop:
         """Wait for the next request, and let no thread run meanwhile: a loop without pauses would only take time."""
         _recv_with_gil(self._descriptor, ctypes.create_string_buffer(1), 1, socket.MSG_PEEK)
 
-    def _go_on(self, until_ns: int, clock_ns: int, messages: List[wire.Message]) -> bool:
-        """Let simulated time go on to a tick of /clock or another time; return False if some thread still runs."""
+    def _answer(self, until_ns: int, clock_ns: int, messages: List[wire.Message]) -> bool:
+        """Advance to `until_ns`; if `clock_ns` has changed, /clock ticks first. Return False if a thread still runs."""
         rested, ticks = True, clock_ns != self.clock.now_ns
         if (messages or ticks) and not self._busy:
-            rested = self._live(until_ns - 1)
+            rested = self._advance_to(until_ns - 1)
         if messages:
             with scheduler.work():
                 for topic, data in messages:
@@ -149,9 +149,9 @@ class RequestLoop:
                 rested = self._rest() and rested
         is_at_rest = ticks and not self.clock.set(clock_ns) and rested and not self._busy
         self.clock.end_sleeps()
-        return self._live(until_ns, is_at_rest) and rested
+        return self._advance_to(until_ns, is_at_rest) and rested
 
-    def _live(self, until_ns: int, is_at_rest: bool = False) -> bool:
+    def _advance_to(self, until_ns: int, is_at_rest: bool = False) -> bool:
         """Let everything happen until that time; return False if some thread still runs."""
         rested = True
         while True:
@@ -164,10 +164,10 @@ class RequestLoop:
 
     def _rest(self) -> bool:
         """Wait until all threads wait; return False if they use more processor time than is allowed."""
-        look, started = 0.001, stuck.processor_time() if self._busy else math.inf
+        poll_period, started = 0.001, stuck.processor_time() if self._busy else math.inf
         turn, turn_started = -1, 0.0
         for count in itertools.count(1):
-            idle = scheduler.wait_until_idle(look)
+            idle = scheduler.wait_until_idle(poll_period)
             stuck.children.poll()
             asleep = None if idle else stuck.all_asleep()
             is_over = idle or (asleep is not None and not scheduler.move_to_background(asleep))
@@ -179,8 +179,8 @@ class RequestLoop:
                     self._budget.reset()
                     return True
                 if idle:
-                    files.wait_for_more(look)
-            look = min(2.0 * look, MAX_POLL_PERIOD, self._budget.time / 2.0)
+                    files.wait_for_more(poll_period)
+            poll_period = min(2.0 * poll_period, MAX_POLL_PERIOD, self._budget.time / 2.0)
             used = stuck.processor_time()  # not before: mostly there is nothing to wait for, and the kernel takes long
             started = min(started, used)
             if turn != scheduler.turns:

@@ -1,8 +1,8 @@
 """Finds what the scheduler does not see: threads that wait in an unknown way, and other processes of the hand-in.
 
 Both are found in /proc. A thread counts as waiting if the kernel shows it asleep, but not for a disk, and it has not
-run between two looks. A thread that polls in C also counts as waiting: it has slept for most of a second in which no
-other thread had a turn. It counts as waiting until it waits in a known way. Other processes hold simulated time as
+run between two looks. A thread that polls in C also counts as waiting if it has slept for most of a second in which no
+other thread had a turn; it does so until it waits in a known way. Other processes hold simulated time as
 long as they work, and their processor time counts as the node's.
 """
 

@@ -11,9 +11,9 @@ AGES = np.arange(0.0, 0.305, 0.01)  # [s] of the pose that feedback may be of
 LONG_AGES = np.arange(0.0, 3.05, 0.1)  # [s] likewise, of feedback that is wrong
 OLD = 0.085  # [s] a server that waits for odometry and then for a scan is 0.07 s late; an iteration is 0.1 s
 MOVING = 10  # fewer messages say nothing about their age
-CHANGED = 0.02  # [m], [rad] change of an error within the oldest of the ages
+CHANGED = 0.02  # [m], [rad] change of the true error over the largest age
 STEP = 0.005  # [m], [rad] change of an error from one message to the next
-MAX_DIFFERENCE = 0.2  # [m], [rad] that counts of a difference
+MAX_DIFFERENCE = 0.2  # [m], [rad] larger differences count as this
 MOST = 0.6  # share of messages that have the value of the one before
 
 
@@ -40,7 +40,7 @@ def repeats(index: int, scenarios: Sequence[Sequence[Pair]]) -> int:
 
 
 def _differences(record: Record, goal: SentGoal, index: int, ages: np.ndarray) -> np.ndarray:
-    """For each message while the true error changes, and each of the ages, the difference from the error of then."""
+    """(messages, ages): the reported error minus the true error `age` seconds earlier, while the true error changes."""
     samples = record.samples_between(goal.time - ages[-1] - 0.2, record.active_until(goal))
     own = record.feedback_of(goal)
     if len(samples) < 2 or not own:

@@ -13,7 +13,7 @@ RAISED = 1  # exit status of a Python whose main thread has not caught an except
 
 
 def closest(name: str, others: Sequence[str]) -> str:
-    """The name in `names` that is most similar to a name; empty if no name is similar."""
+    """The name in `others` that is most similar to a name; empty if no name is similar."""
     return next(iter(difflib.get_close_matches(name, others, n=1, cutoff=0.5)), "")
 
 

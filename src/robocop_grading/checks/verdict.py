@@ -12,7 +12,7 @@ NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
 class Kind(enum.Enum):
-    """The ways in which contracts are broken, as far as failures follow from them, or they from other failures."""
+    """The ways of breaking a contract that the table in consequences.py distinguishes."""
 
     NOT_REACHED = "not reached"  # no failure
     INCOMPLETE = "the scenario was not recorded"

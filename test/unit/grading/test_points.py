@@ -93,19 +93,19 @@ def test_part_that_is_not_handed_in_counts_the_same_in_every_report(tmp_path) ->
     server = [it for it in PLAN.checks if it.part == "server"]
     checks = [CheckResult(it.name, "server", "", CheckOutcome.PASSED, it.points, it.points, it.extra) for it in server]
     grade = completed(Grade("anna", tuple(checks)), PLAN)
-    words = "5 of 8 points, 0 of 1 extra"
+    server = sum(check.points for check in PLAN.checks if check.part == "server")
+    words = f"{server:g} of {PLAN.points:g} points, 0 of {PLAN.extra:g} extra"
     assert not grade.all_right and grade.words == words
     write(grade, PLAN, {}, tmp_path)
     texts = {name: (tmp_path / name).read_text() for name in ("report.html", "summary.md")}
     for text in (as_text(grade, {}), *texts.values()):
         assert words in text and "not handed in" in text and "the bridge" in text
-    assert json.loads((tmp_path / "report.json").read_text())["of"] == 8.0
-    assert json.loads((tmp_path / "classroom.json").read_text())["max_score"] == 8.0
-    assert (
-        sum(test.get("max_score", 0.0) for test in json.loads((tmp_path / "results.json").read_text())["tests"]) == 8.0
-    )
+    assert json.loads((tmp_path / "report.json").read_text())["of"] == PLAN.points
+    assert json.loads((tmp_path / "classroom.json").read_text())["max_score"] == PLAN.points
+    tests = json.loads((tmp_path / "results.json").read_text())["tests"]
+    assert sum(test.get("max_score", 0.0) for test in tests) == pytest.approx(PLAN.points)
     row = table([StoredGrade("anna", grade.checks)], PLAN).splitlines()[1]
-    assert row.startswith("anna,5.0,8.0,0.0,5.0,not handed in,")
+    assert row.startswith(f"anna,{server},{PLAN.points},0.0,{server},not handed in,")
 
 
 def test_progress_counts_the_scenarios_of_the_parts_that_are_graded(capsys) -> None:

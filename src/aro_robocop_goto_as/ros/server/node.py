@@ -77,7 +77,7 @@ class GotoNode:
                 self.display.newest = execution
                 rospy.loginfo("goal accepted: %s", execution.where())
             while ending is None:
-                # The next one, or the one that was due when this goal came.
+                # The next tick, or the tick not yet answered when this goal came.
                 tick = self.ticks.wait_for_next(self.ticks.answered, self.is_interrupted)
                 if self.stop_reason:
                     ending = execution.stopped_early(Outcome.SHUTDOWN, self.stop_reason)

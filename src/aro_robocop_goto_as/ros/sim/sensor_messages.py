@@ -99,7 +99,7 @@ def packed_range(frame: str, sonar: Sonar, distance: Row) -> PackedMessage:
     """The range (1,) [m] of one robot's sonar."""
     template = sensor_msgs.Range(
         header=Header(frame_id=frame),
-        radiation_type=sensor_msgs.Range.ULTRASOUND,
+        radiation_type=sonar.radiation_type,
         field_of_view=sonar.angle,
         min_range=sonar.range_min,
         max_range=sonar.range_max,
