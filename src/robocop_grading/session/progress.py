@@ -6,7 +6,7 @@ from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.goto.rule import Errors, LastProgress, track_progress
 
 from ..handout import Limits
-from ..record import Goal, errors_at
+from ..record import SentGoal, errors_at
 
 
 class Progress:
@@ -16,7 +16,7 @@ class Progress:
         self._limits = limits
         self._newest: Dict[str, LastProgress] = {}  # by goal
 
-    def missing_for(self, pose: Pose2D, running: Sequence[Goal], now: float) -> float:
+    def missing_for(self, pose: Pose2D, running: Sequence[SentGoal], now: float) -> float:
         """How long [s] there has been no progress towards any goal at a time [s]; it starts anew when a goal ends."""
         if not self._newest.keys() <= {goal.id for goal in running}:
             self._newest = {}

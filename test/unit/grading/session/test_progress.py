@@ -2,10 +2,10 @@
 
 from aro_robocop_goto_as.geometry import Pose2D
 from robocop_grading.handout import Limits
-from robocop_grading.record import Goal
+from robocop_grading.record import SentGoal
 from robocop_grading.session.progress import Progress
 
-OLDER, NEWER = Goal("older", 2.0, 0.0, 0.0, "PREEMPTED"), Goal("newer", 0.5, -0.6, 3.0, "SUCCEEDED")
+OLDER, NEWER = SentGoal("older", 2.0, 0.0, 0.0, "PREEMPTED"), SentGoal("newer", 0.5, -0.6, 3.0, "SUCCEEDED")
 AWAY = [Pose2D(0.6 + 0.02 * tick, 0.0) for tick in range(71)]  # to the older goal at 0.2 m/s, away from the newer one
 
 
