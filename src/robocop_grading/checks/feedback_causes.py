@@ -4,7 +4,7 @@ import math
 from statistics import mean, median
 from typing import Callable, List, Sequence, Set, Tuple
 
-from ..record import ERRORS, errors_at, wrapped
+from ..record import ERRORS, wrapped
 from .feedback_hypotheses import ANGLE, CAUSES, FROM_ORIGIN, IN_DEGREES, POSITION, SENTENCES, UNCHANGED, Pair
 
 TOLERANCES = (0.06, 0.12)  # [m], [rad] within which a value fits a hypothesis: the default tolerances of the checks
@@ -84,7 +84,7 @@ def _heading_is_in_degrees(scenarios: Sequence[Sequence[Pair]], age: int) -> boo
         for (earlier, before), (pair, now) in zip(based, based[1:]):
             turned = wrapped(now.yaw - before.yaw)
             if pair.goal == earlier.goal and abs(turned) > TURNED:
-                true = errors_at(now, pair.goal)[ANGLE] - errors_at(before, pair.goal)[ANGLE]
+                true = pair.goal.errors_at(now)[ANGLE] - pair.goal.errors_at(before)[ANGLE]
                 told = pair.feedback.angle_error - earlier.feedback.angle_error
                 misses.append(abs(wrapped(told - (true + turned - math.degrees(turned)))))
     return len(misses) >= ENOUGH and _fits(misses, ANGLE)

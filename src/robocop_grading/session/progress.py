@@ -6,7 +6,7 @@ from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.goto.rule import Errors, LastProgress, track_progress
 
 from ..handout import Limits
-from ..record import SentGoal, errors_at
+from ..record import SentGoal
 
 
 class Progress:
@@ -21,6 +21,6 @@ class Progress:
         if not self._newest.keys() <= {goal.id for goal in running}:
             self._newest = {}
         for goal in running:
-            errors, least = Errors(*errors_at(pose, goal)), (self._limits.stall_distance, self._limits.stall_angle)
+            errors, least = Errors(*goal.errors_at(pose)), (self._limits.stall_distance, self._limits.stall_angle)
             self._newest[goal.id] = track_progress(self._newest.get(goal.id), errors, now, *least)
         return now - max((it.since for it in self._newest.values()), default=now)
