@@ -20,7 +20,7 @@ from . import faults
 from .errors import GradingError, GradingSetupError, PlanError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
-from .grades import CheckResult, Grade, Outcome, scored
+from .grades import CheckOutcome, CheckResult, Grade, scored
 from .plan import MIDDLE, Plan
 from .plan_file import load
 from .report.write import make_report_folder
@@ -73,7 +73,7 @@ def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
     lines += [f"problem: {problem}" for problem in grade.problems]
     lines += [f"note: {note}" for note in grade.notes]
     lines += [f"fix first: {mistake.sentence}" for mistake in grade.mistakes[:1]]
-    unfinished = {check.part for check in grade.checks if check.outcome is not Outcome.PASSED and not check.extra}
+    unfinished = {check.part for check in grade.checks if check.outcome is not CheckOutcome.PASSED and not check.extra}
     lines += [f"next: {step}" for part, step in next_steps.items() if step and part in unfinished][:1]
     lines.append(f"{grade.name}: {grade.words}")
     return "\n".join(printable(line) for line in lines)  # explanations may quote the submission's output

@@ -10,7 +10,7 @@ from .plan import Plan
 from .texts import sentences
 
 
-class Outcome(enum.Enum):
+class CheckOutcome(enum.Enum):
     """The outcome of a check."""
 
     PASSED = "passed"
@@ -26,7 +26,7 @@ class CheckResult:
     name: str
     part: str
     sentence: str  # the contract
-    outcome: Outcome
+    outcome: CheckOutcome
     points: float
     points_available: float
     extra: bool
@@ -127,14 +127,14 @@ class Grade:
     @property
     def all_right(self) -> bool:
         """Return whether every check that is not extra passed."""
-        return all(check.outcome is Outcome.PASSED for check in self.checks if not check.extra)
+        return all(check.outcome is CheckOutcome.PASSED for check in self.checks if not check.extra)
 
     @property
     def mistakes(self) -> List[Mistake]:
         """The mistakes, the most expensive one first."""
         found = []
         for check in self.checks:
-            if check.outcome is Outcome.FAILED and not check.follows:
+            if check.outcome is CheckOutcome.FAILED and not check.follows:
                 lost = [other for other in self.checks if other.follows == check.name]
                 points = total(it.points_available for it in [check, *lost] if not it.extra)
                 extra = total(it.points_available for it in [check, *lost] if it.extra)
@@ -146,14 +146,14 @@ class Grade:
         """The checks that neither failed nor follow from a mistake, by their outcomes in words: passed ones last."""
         known = {it.name for mistake in self.mistakes for it in (mistake.check, *mistake.followers)}
         others: Dict[str, List[CheckResult]] = {}
-        for check in sorted(self.checks, key=lambda it: it.outcome is Outcome.PASSED):
+        for check in sorted(self.checks, key=lambda it: it.outcome is CheckOutcome.PASSED):
             if check.name not in known:
                 others.setdefault(check.words, []).append(check)
         return others
 
     def failed(self) -> List[str]:
         """Names of the failed checks."""
-        return [check.name for check in self.checks if check.outcome is Outcome.FAILED]
+        return [check.name for check in self.checks if check.outcome is CheckOutcome.FAILED]
 
 
 def scored(checks: Sequence[CheckResult]) -> Tuple[float, float]:
@@ -165,7 +165,7 @@ def scored(checks: Sequence[CheckResult]) -> Tuple[float, float]:
 def completed(grade: Grade, plan: Plan) -> Grade:
     """The grade with the checks of parts that were not handed in: the total is the same for everybody."""
     missing = [it for it in plan.checks if it.name not in {check.name for check in grade.checks}]
-    outcome = Outcome.NOT_HANDED_IN
+    outcome = CheckOutcome.NOT_HANDED_IN
     results = [
         CheckResult(it.name, it.part, it.contract, outcome, 0.0, it.points, it.extra, why=f"the {it.part}")
         for it in missing

@@ -8,7 +8,7 @@ from .checks.bridge import about_pending
 from .checks.topic_use import wrong_type
 from .checks.verdict import Kind
 from .faults import Faults
-from .grades import CheckResult, Grade, Outcome
+from .grades import CheckOutcome, CheckResult, Grade
 from .plan import CheckPlan, Plan
 from .reasons import Reasons
 from .record import Record
@@ -47,7 +47,7 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
 def _notes(records: Mapping[str, Record], plan: Plan, checks: Sequence[CheckResult]) -> List[str]:
     """What to say about a part besides its checks."""
     said = [*about_pending(records, plan.limits), *_programs(records)]
-    if any(check.outcome is not Outcome.PASSED for check in checks):
+    if any(check.outcome is not CheckOutcome.PASSED for check in checks):
         said += [*_unpublished(records), *_wrong_types(records, checks)]
     return said
 
@@ -92,14 +92,14 @@ def _with_reasons(results: List[CheckResult], records: Mapping[str, Record], fau
     failures = {name: it.failure for name, it in failed.items() if it.failure is not None}
     where = {name: records[it.scenario] for name, it in failed.items() if it.scenario in records}
     table = Reasons(failures, where, faults)
-    first = table.first([it.name for it in results if it.outcome is not Outcome.PASSED])
+    first = table.first([it.name for it in results if it.outcome is not CheckOutcome.PASSED])
     return [replace(it, follows="" if first.get(it.name, it.name) == it.name else first[it.name]) for it in results]
 
 
 def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str, faults: Faults) -> CheckResult:
     """A check fails if it fails in one scenario, and passes if it passes in at least one."""
     judged, contract = CHECKS[check.name], CHECKS[check.name].contract
-    result = CheckResult(check.name, check.part, contract, Outcome.NOT_REACHED, 0.0, check.points, check.extra)
+    result = CheckResult(check.name, check.part, contract, CheckOutcome.NOT_REACHED, 0.0, check.points, check.extra)
     for name in check.scenarios:
         verdict: Verdict = NotReached(NOT_STARTED)
         what = f"{check.name} in scenario {name}"
@@ -114,9 +114,9 @@ def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem:
                 unexplained = replace(verdict, cause=sentences(verdict.cause, NOT_EXPLAINED))
                 examined = [it for it in check.scenarios if it in records]
                 verdict = faults.tried(f"the cause of {what}", unexplained, judged.explain, records, examined, verdict)
-            return replace(result, outcome=Outcome.FAILED, points=0.0, scenario=name, failure=verdict, why="")
+            return replace(result, outcome=CheckOutcome.FAILED, points=0.0, scenario=name, failure=verdict, why="")
         if isinstance(verdict, Passed):
-            result = replace(result, outcome=Outcome.PASSED, points=check.points, why="")
-        elif result.outcome is Outcome.NOT_REACHED:
+            result = replace(result, outcome=CheckOutcome.PASSED, points=check.points, why="")
+        elif result.outcome is CheckOutcome.NOT_REACHED:
             result = replace(result, why=result.why or verdict.why)
     return result

@@ -39,7 +39,7 @@ class Sample:
 
 
 @dataclass(frozen=True)
-class Goal:
+class SentGoal:
     """A goal that was sent, in odom [m], with its expected terminal state."""
 
     id: str
@@ -160,7 +160,7 @@ class Record:
     problem: str = ""  # why the scenario was ended early
     obstacles: Tuple[Tuple[float, ...], ...] = ()  # outlines in odom: x, y, x, y, ... [m]
     samples: Tuple[Sample, ...] = ()
-    goals: Tuple[Goal, ...] = ()
+    goals: Tuple[SentGoal, ...] = ()
     cancels: Tuple[Cancel, ...] = ()
     statuses: Tuple[Status, ...] = ()
     results: Tuple[Result, ...] = ()
@@ -191,17 +191,17 @@ def read(kind: Type[T], path: Path) -> T:
     return value
 
 
-def results_of(record: Record, goal: Goal) -> List[Result]:
+def results_of(record: Record, goal: SentGoal) -> List[Result]:
     """The results of a goal in order of arrival; a correct server sends one."""
     return [result for result in record.results if result.id == goal.id]
 
 
-def feedback_of(record: Record, goal: Goal) -> List[Feedback]:
+def feedback_of(record: Record, goal: SentGoal) -> List[Feedback]:
     """The feedback about a goal in order of arrival."""
     return [message for message in record.feedback if message.id == goal.id]
 
 
-def active_until(record: Record, goal: Goal) -> float:
+def active_until(record: Record, goal: SentGoal) -> float:
     """When a goal got its first terminal state or result; infinity if it got none."""
     ends = [result.time for result in results_of(record, goal)]
     ends += [change.time for change in record.statuses if change.id == goal.id and change.status in TERMINAL]
@@ -218,7 +218,7 @@ def wrapped(angle: float) -> float:
     return wrap_angle(angle) if math.isfinite(angle) else angle
 
 
-def errors_at(sample: Union[Sample, Pose2D], goal: Goal) -> Tuple[float, float]:
+def errors_at(sample: Union[Sample, Pose2D], goal: SentGoal) -> Tuple[float, float]:
     """From a pose in odom, the true position_error [m] and angle_error [rad], as the handout defines them."""
     dx, dy = goal.x - sample.x, goal.y - sample.y
     return math.hypot(dx, dy), wrapped(math.atan2(dy, dx) - sample.yaw)

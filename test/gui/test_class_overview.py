@@ -6,7 +6,7 @@ import pytest
 from browser import chromium
 
 from robocop_grading.classroom.results import SHOWN, StoredGrade, page
-from robocop_grading.grades import CheckResult, Outcome
+from robocop_grading.grades import CheckOutcome, CheckResult
 from robocop_grading.plan_file import load
 
 PLAN = load(Path(__file__).resolve().parents[2] / "config" / "grading.yaml")
@@ -18,7 +18,7 @@ NAMES = "() => [...document.querySelectorAll('#hand_ins tbody tr:not([hidden])')
 def test_overview_is_searched_sorted_and_shown_in_full(tmp_path):
     results = [
         StoredGrade(
-            f"s{number:03}", (CheckResult("cancel", "server", "", Outcome.PASSED, float(number % 7), 7.0, False),)
+            f"s{number:03}", (CheckResult("cancel", "server", "", CheckOutcome.PASSED, float(number % 7), 7.0, False),)
         )
         for number in range(COUNT)
     ]

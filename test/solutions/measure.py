@@ -38,7 +38,7 @@ from wrong_solutions import WRONG
 
 from aro_robocop_goto_as.errors import RobocopError
 from robocop_grading.checks.verdict import without_figures
-from robocop_grading.grades import Outcome
+from robocop_grading.grades import CheckOutcome
 
 BY_NAME = {wrong.name: wrong for wrong in WRONG}
 BASES = ("base_server", "base_bridge", "functions_bang_bang")
@@ -114,7 +114,7 @@ def once(job):
     with tempfile.TemporaryDirectory() as folder:
         try:
             grade = graded(job.name, job.text, Path(folder), job.seed)
-            failed = [it.name for it in grade.checks if it.outcome is not Outcome.PASSED]
+            failed = [it.name for it in grade.checks if it.outcome is not CheckOutcome.PASSED]
             report = {it.name: [it.outcome.value, it.words] for it in grade.checks}
             entry.update(points=grade.points, failed=failed, report=report)
         except RobocopError as error:

@@ -7,7 +7,7 @@ import pytest
 from graded import graded
 from mistakes import ALLOWED, MISTAKES, with_mistakes
 
-from robocop_grading.grades import Outcome
+from robocop_grading.grades import CheckOutcome
 
 SEED = 1
 SAMPLE = {1: 4, 2: 8, 3: 4}  # how many combinations of so many mistakes
@@ -35,7 +35,7 @@ def test_report_names_what_its_mistakes_explain_and_nothing_else(names, tmp_path
     grade = graded("+".join(names), with_mistakes(names), tmp_path)
     expected = {check for name in names if name not in ALLOWED for check in MISTAKES[name].lost.split()}
     assert not grade.tracebacks
-    assert {it.name for it in grade.checks if it.outcome is not Outcome.PASSED} <= expected
+    assert {it.name for it in grade.checks if it.outcome is not CheckOutcome.PASSED} <= expected
     assert bool(grade.mistakes) == bool(expected)
     if len(names) == 1:
-        assert {it.name for it in grade.checks if it.outcome is not Outcome.PASSED} == expected
+        assert {it.name for it in grade.checks if it.outcome is not CheckOutcome.PASSED} == expected

@@ -17,7 +17,7 @@ from wrong_solutions import ADVISED, WRONG
 
 from robocop_grading.cli import INTERRUPTED
 from robocop_grading.errors import GradingError
-from robocop_grading.grades import Outcome
+from robocop_grading.grades import CheckOutcome
 from robocop_grading.plan_file import load
 from robocop_grading.sandbox import bubblewrap as sandbox
 from robocop_grading.submission import prepare_submission
@@ -39,13 +39,13 @@ def pytest_generate_tests(metafunc):
 @pytest.mark.parametrize("right", RIGHT)
 def test_correct_solution_gets_full_marks(right, tmp_path):
     grade = graded(right, RIGHT[right], tmp_path)
-    assert {check.name: check.words for check in grade.checks if check.outcome is not Outcome.PASSED} == {}
+    assert {check.name: check.words for check in grade.checks if check.outcome is not CheckOutcome.PASSED} == {}
 
 
 def test_wrong_solution_fails_the_intended_check_with_the_expected_explanation(wrong, tmp_path):
     grade = graded(wrong.name, wrong.text(), tmp_path)
     check = next(check for check in grade.checks if check.name == wrong.check)
-    assert check.outcome is Outcome.FAILED, check.words
+    assert check.outcome is CheckOutcome.FAILED, check.words
     assert wrong.words in check.words
     if wrong.alone:
         assert [mistake.check.name for mistake in grade.mistakes] == [wrong.check]
@@ -74,7 +74,7 @@ def test_node_that_connects_while_goals_run_leaves_the_same_records_each_time(tm
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_correct_solution_gets_full_marks_whatever_scenarios_are_drawn(seed, tmp_path):
     grade = graded("base_server", RIGHT["base_server"], tmp_path, seed)
-    assert {check.name: check.words for check in grade.checks if check.outcome is not Outcome.PASSED} == {}
+    assert {check.name: check.words for check in grade.checks if check.outcome is not CheckOutcome.PASSED} == {}
 
 
 @pytest.mark.slow

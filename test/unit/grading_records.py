@@ -11,7 +11,7 @@ from support import ROOT
 from robocop_grading import record as rec
 from robocop_grading.checks import Failed
 from robocop_grading.classroom.results import Results
-from robocop_grading.grades import CheckResult, Grade, Outcome
+from robocop_grading.grades import CheckOutcome, CheckResult, Grade
 from robocop_grading.handout import Limits
 from robocop_grading.judge import judge
 from robocop_grading.plan_file import load
@@ -21,7 +21,7 @@ from robocop_grading.report.write import write
 PLAN_FILE = Path(ROOT, "config", "grading.yaml")
 PLAN = load(PLAN_FILE)
 LIMITS = Limits()
-GOAL = rec.Goal("g", 1.0, 1.0, 0.0, "SUCCEEDED")
+GOAL = rec.SentGoal("g", 1.0, 1.0, 0.0, "SUCCEEDED")
 
 
 def drive() -> Record:
@@ -79,7 +79,7 @@ def graded(*records: Record, problem: str = "") -> Grade:
 def judged(name: str, part: str, points: float, cause: str = "", extra: bool = False, follows: str = "") -> CheckResult:
     """The result of a check, failed if there is a cause."""
     failure = Failed("", "", 0.0, cause) if cause else None
-    outcome = Outcome.FAILED if cause else Outcome.PASSED
+    outcome = CheckOutcome.FAILED if cause else CheckOutcome.PASSED
     return CheckResult(name, part, "", outcome, points, 1.0, extra, failure=failure, follows=follows)
 
 

@@ -14,15 +14,15 @@ from command import ROOT, dry_run, make_program, robocop
 from robocop_grading import new
 from robocop_grading.checks import Failed
 from robocop_grading.errors import GradingError, GradingSetupError
-from robocop_grading.grades import CheckResult, Grade, Outcome
+from robocop_grading.grades import CheckOutcome, CheckResult, Grade
 from robocop_grading.plan_file import load
 from robocop_grading.report.write import write
 from robocop_grading.sandbox import bubblewrap as sandbox
 
 IMAGE = "my-course/robocop:1"
-PASSED = CheckResult("reaches_goal", "server", "The goal is reached.", Outcome.PASSED, 2.0, 2.0, False)
+PASSED = CheckResult("reaches_goal", "server", "The goal is reached.", CheckOutcome.PASSED, 2.0, 2.0, False)
 LATE = Failed("at most 1 s", "2 s", 3.5, "<b>late</b>\n\n# heading [link](http://x)")
-FAILED = CheckResult("one_ending", "server", "A goal ends once.", Outcome.FAILED, 0.0, 1.0, False, "far", LATE)
+FAILED = CheckResult("one_ending", "server", "A goal ends once.", CheckOutcome.FAILED, 0.0, 1.0, False, "far", LATE)
 GRADE = Grade("anna", (PASSED, FAILED))
 
 

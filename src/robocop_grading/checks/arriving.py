@@ -6,9 +6,9 @@ from typing import Optional, Sequence
 from ..handout import GOAL_RADIUS, Limits
 from ..record import (
     SUCCEEDED,
-    Goal,
     Record,
     Sample,
+    SentGoal,
     active_until,
     errors_at,
     feedback_of,
@@ -35,7 +35,7 @@ def reaches_goal(record: Record, limits: Limits) -> Verdict:
     return of_goals(record, lambda goal: wrong_success(record, goal, limits) or _success_too_late(record, goal, limits))
 
 
-def _success_too_late(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+def _success_too_late(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """Name the failure of a robot that drives on although it is close enough for success."""
     end = active_until(record, goal)
     way = [(sample.time, errors_at(sample, goal)[0]) for sample in samples_between(record, goal.time, end)]
@@ -57,7 +57,7 @@ def _turned(samples: Sequence[Sample]) -> float:
     return sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
 
 
-def _lateness(record: Record, goal: Goal, samples: Sequence[Sample], limits: Limits) -> str:
+def _lateness(record: Record, goal: SentGoal, samples: Sequence[Sample], limits: Limits) -> str:
     """Why success is late: what the robot does meanwhile, and what the server has reported."""
     begin, end = (samples[0].time, samples[-1].time) if samples else (0.0, 0.0)
     drives = any(abs(command.v) > MIN_SPEED for command in record.commands if begin <= command.time < end)
@@ -83,7 +83,7 @@ def goal_behind(record: Record, limits: Limits) -> Verdict:
     return NotReached("the first goal did not end") if alone else verdict
 
 
-def _long_turn(record: Record, goal: Goal) -> Optional[Failed]:
+def _long_turn(record: Record, goal: SentGoal) -> Optional[Failed]:
     """Name the failure of a robot that turned by much more than needed on its way to the goal."""
     samples = samples_between(record, goal.time, active_until(record, goal))
     there = next((number for number, it in enumerate(samples) if errors_at(it, goal)[0] < GOAL_RADIUS), len(samples))
@@ -114,7 +114,7 @@ def already_there(record: Record, limits: Limits) -> Verdict:
     )
 
 
-def _not_at_once(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+def _not_at_once(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """Name the failure of a robot that takes long or moves although it is at the goal."""
     end = active_until(record, goal)
     samples = samples_between(record, goal.time, end + limits.stop_within)

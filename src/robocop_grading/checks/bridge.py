@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import List, Mapping, Optional, Sequence
 
 from ..handout import Limits
-from ..record import PREEMPTED, Click, Goal, Record
+from ..record import PREEMPTED, Click, Record, SentGoal
 from . import bridge_causes as causes
 from .bridge_reports import is_silent, untrue, wrong_reports
 from .node_lifetime import no_exception, stays_alive
@@ -13,7 +13,7 @@ from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 
-def _goals_after(record: Record, click: Click, until: float = math.inf) -> List[Goal]:
+def _goals_after(record: Record, click: Click, until: float = math.inf) -> List[SentGoal]:
     return [goal for goal in record.goals if click.time - 1e-6 <= goal.time <= until]
 
 

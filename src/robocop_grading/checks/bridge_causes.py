@@ -7,7 +7,7 @@ from typing import Dict, Sequence
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 
 from ..handout import ACTION, CLICKS
-from ..record import Cancel, Click, Goal, Record
+from ..record import Cancel, Click, Record, SentGoal
 from .node_lifetime import closest
 from .output import NOT_IMPORTED, UNKNOWN_TYPE, logged
 from .topic_use import wrong_type
@@ -52,11 +52,11 @@ NO_OLDER_GOAL_SEEN = (
 )
 
 
-def distance(goal: Goal, x: float, y: float) -> float:
+def distance(goal: SentGoal, x: float, y: float) -> float:
     return math.hypot(goal.x - x, goal.y - y)
 
 
-def other_position(click: Click, goal: Goal) -> str:
+def other_position(click: Click, goal: SentGoal) -> str:
     """Which mistake explains a goal's position that is not the click's."""
     x, y = click.x, click.y
     for cause, there in (
@@ -105,7 +105,7 @@ def unconnected(record: Record) -> str:
     return f"The action client looks for {closest(name, others) or others[0]}; the handout says {name}"
 
 
-def newer_cancelled(record: Record, newer: Goal) -> str:
+def newer_cancelled(record: Record, newer: SentGoal) -> str:
     """Why the newer goal is cancelled."""
     by_stamp = [cancel for cancel in record.cancels if not cancel.id and cancel.stamp > 0.0]
     by_id = any(cancel.id == newer.id for cancel in record.cancels)
@@ -117,7 +117,7 @@ def newer_cancelled(record: Record, newer: Goal) -> str:
     return "The newer goal is cancelled, too: cancel before send_goal(), not after it"
 
 
-def not_cancelled(requests: Sequence[Cancel], older: Goal) -> str:
+def not_cancelled(requests: Sequence[Cancel], older: SentGoal) -> str:
     """Why the older goal is not cancelled."""
     if not requests:
         return (
@@ -141,7 +141,7 @@ def looks_up_too_early(record: Record) -> bool:
     return logged(record, TOO_EARLY)
 
 
-def wrong_transform(record: Record, click: Click, goal: Goal) -> str:
+def wrong_transform(record: Record, click: Click, goal: SentGoal) -> str:
     """Which mistake explains where a click in another frame than odom has become a goal."""
     if distance(goal, click.x, click.y) < POSITION_TOLERANCE:
         return (

@@ -7,9 +7,9 @@ from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import (
     Command,
     Feedback,
-    Goal,
     Record,
     Sample,
+    SentGoal,
     active_until,
     errors_at,
     feedback_of,
@@ -64,7 +64,7 @@ def none_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
     return logged(record, NO_STATE_LOGGED, failure.time)
 
 
-def silent(record: Record, goal: Goal) -> bool:
+def silent(record: Record, goal: SentGoal) -> bool:
     """Return whether the server, after it got a goal, neither moved the robot nor published anything about the goal."""
     told = [*feedback_of(record, goal), *results_of(record, goal)]
     return not told and not any(command.time >= goal.time for command in record.commands)

@@ -9,9 +9,9 @@ from ..record import (
     PREEMPTED,
     SUCCEEDED,
     TERMINAL,
-    Goal,
     Record,
     Result,
+    SentGoal,
     errors_at,
     feedback_of,
     results_of,
@@ -39,7 +39,7 @@ EMPTY_RESULT = (
 )
 
 
-def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Optional[Failed]:
+def wrong_ending(record: Record, goal: SentGoal, wanted: int, limits: Limits) -> Optional[Failed]:
     """What went wrong with a goal that did not end in the wanted state; None if it did."""
     results = results_of(record, goal)
     if not results:
@@ -65,12 +65,12 @@ def wrong_ending(record: Record, goal: Goal, wanted: int, limits: Limits) -> Opt
     return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), ended(result.status), goal)
 
 
-def wrong_success(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+def wrong_success(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """What went wrong with a goal that did not succeed, or not at its position."""
     return wrong_ending(record, goal, SUCCEEDED, limits) or success_too_far(record, goal, limits)
 
 
-def of_goals(record: Record, problem: Callable[[Goal], Optional[Failed]]) -> Verdict:
+def of_goals(record: Record, problem: Callable[[SentGoal], Optional[Failed]]) -> Verdict:
     """The first problem that a goal has."""
     if not record.goals:
         return NotReached("no goal was sent")
@@ -89,13 +89,13 @@ def narrow_obstacle(record: Record) -> str:
     )
 
 
-def _collision(record: Record, goal: Goal, end: float) -> str:
+def _collision(record: Record, goal: SentGoal, end: float) -> str:
     """A sentence about the first contact with an obstacle, if there was one."""
     contacts = [sample for sample in samples_between(record, goal.time, end) if sample.touching]
     return f"The robot ran into an obstacle at {contacts[0].time:.1f} s" if contacts else ""
 
 
-def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
+def _wrong_state(record: Record, goal: SentGoal, status: int, wanted: int) -> str:
     end = results_of(record, goal)[0].time
     told = logged_cause(record, end)
     if told:
@@ -124,13 +124,13 @@ def _wrong_state(record: Record, goal: Goal, status: int, wanted: int) -> str:
     return "The server set the wrong terminal state"
 
 
-def _asked_to_end(record: Record, goal: Goal, end: float) -> bool:
+def _asked_to_end(record: Record, goal: SentGoal, end: float) -> bool:
     """Return whether a cancel request or a newer goal came before a time [s]."""
     cancelled = any(cancel.time <= end and cancel.id in ("", goal.id) for cancel in record.cancels)
     return cancelled or any(goal.time < newer.time <= end for newer in record.goals)
 
 
-def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+def success_too_far(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """What went wrong with a goal that succeeded away from its position."""
     result = results_of(record, goal)[0]
     at_end = samples_between(record, result.time - 0.2, result.time)
@@ -147,12 +147,12 @@ def success_too_far(record: Record, goal: Goal, limits: Limits) -> Optional[Fail
     return Failed(f"success within {GOAL_RADIUS:g} m", seen, result.time, cause, kind, goal)
 
 
-def _at_once(record: Record, goal: Goal) -> bool:
+def _at_once(record: Record, goal: SentGoal) -> bool:
     """Return whether a goal has ended too soon to be driven to."""
     return any(result.time - goal.time < AT_ONCE for result in results_of(record, goal)[:1])
 
 
-def _took_longer(record: Record, goal: Goal) -> bool:
+def _took_longer(record: Record, goal: SentGoal) -> bool:
     return bool(results_of(record, goal)) and not _at_once(record, goal)
 
 

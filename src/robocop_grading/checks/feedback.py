@@ -8,7 +8,7 @@ from typing import List, Mapping, Optional, Sequence
 import numpy as np
 
 from ..handout import GOAL_RADIUS, Limits
-from ..record import ERRORS, Goal, Record, active_until, errors_at, feedback_of, samples_between, wrapped
+from ..record import ERRORS, Record, SentGoal, active_until, errors_at, feedback_of, samples_between, wrapped
 from .feedback_age import AGES, LONG_AGES, age_of, repeats
 from .feedback_causes import OTHERWISE, TOLERANCES, UNITS, likely_cause, longest, misses
 from .feedback_hypotheses import ANGLE, OF_POSITION, POSE_TOPIC, POSITION, UNCHANGED, Pair
@@ -74,14 +74,14 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
     return PASSED if judged else NotReached("no goal was active for a second")
 
 
-def _rate(record: Record, goal: Goal) -> Optional[float]:
+def _rate(record: Record, goal: SentGoal) -> Optional[float]:
     """Feedback messages per second while a goal was active; None if that was not long enough."""
     end = min(active_until(record, goal), _arrival(record, goal))
     count = sum(message.time <= end for message in feedback_of(record, goal))
     return None if end - goal.time < MIN_GOAL_TIME else count / (end - goal.time)
 
 
-def _arrival(record: Record, goal: Goal) -> float:
+def _arrival(record: Record, goal: SentGoal) -> float:
     """When [s] the robot came to the goal, or the recording ended: from then on, the server may have left its loop."""
     samples = samples_between(record, goal.time, math.inf)
     there = (sample.time for sample in samples if errors_at(sample, goal)[POSITION] < GOAL_RADIUS)

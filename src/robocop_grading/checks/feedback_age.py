@@ -4,7 +4,7 @@ from typing import Optional, Sequence
 
 import numpy as np
 
-from ..record import Goal, Record, active_until, errors_at, feedback_of, samples_between
+from ..record import Record, SentGoal, active_until, errors_at, feedback_of, samples_between
 from .feedback_hypotheses import ANGLE, Pair
 
 AGES = np.arange(0.0, 0.305, 0.01)  # [s] of the pose that feedback may be of
@@ -39,7 +39,7 @@ def repeats(index: int, scenarios: Sequence[Sequence[Pair]]) -> int:
     return round(moving / (moving - same)) if moving > MOVING and MOST * moving < same < moving else 0
 
 
-def _differences(record: Record, goal: Goal, index: int, ages: np.ndarray) -> np.ndarray:
+def _differences(record: Record, goal: SentGoal, index: int, ages: np.ndarray) -> np.ndarray:
     """For each message while the true error changes, and each of the ages, the difference from the error of then."""
     samples = samples_between(record, goal.time - ages[-1] - 0.2, active_until(record, goal))
     own = feedback_of(record, goal)

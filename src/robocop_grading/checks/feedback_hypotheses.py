@@ -7,7 +7,7 @@ from typing import Callable, List, NamedTuple, Sequence, Tuple
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 
-from ..record import Feedback, Goal, Sample, errors_at, wrapped
+from ..record import Feedback, Sample, SentGoal, errors_at, wrapped
 
 POSITION, ANGLE = range(2)  # indices of ERRORS
 UNSURE = 0.3  # [m] nearer to where the goal is taken to be, an inexact position turns its direction too much
@@ -21,7 +21,7 @@ class Pair(NamedTuple):
 
     feedback: Feedback
     samples: List[Sample]
-    goal: Goal
+    goal: SentGoal
     start: Sample
     started: Pose2D = Pose2D()
 

@@ -9,8 +9,8 @@ from ..handout import HEADING_TOLERANCE, STOP_DISTANCE, Limits
 from ..record import (
     ABORTED,
     STATUS_NAMES,
-    Goal,
     Record,
+    SentGoal,
     active_until,
     errors_at,
     feedback_of,
@@ -55,7 +55,7 @@ def stops_at_obstacle(record: Record, limits: Limits) -> Verdict:
     return _wrong_abort(record, record.goals[0], limits) or PASSED
 
 
-def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+def _wrong_abort(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """What went wrong with a goal that should have been aborted at the right distance."""
     problem = _approach(record, goal) or wrong_ending(record, goal, ABORTED, limits)
     if problem is not None:
@@ -86,7 +86,7 @@ def _wrong_abort(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]
     return None
 
 
-def _late_cause(record: Record, goal: Goal, end: float, clearance: float) -> str:
+def _late_cause(record: Record, goal: SentGoal, end: float, clearance: float) -> str:
     """Why a goal was aborted at a time [s], when the obstacle was nearer [m] than it should have been."""
     own = [it for it in feedback_of(record, goal) if it.time <= end]
     there = samples_between(record, goal.time, end)
@@ -99,7 +99,7 @@ def _late_cause(record: Record, goal: Goal, end: float, clearance: float) -> str
     return ABORTED_NEAR
 
 
-def _approach(record: Record, goal: Goal) -> Optional[Failed]:
+def _approach(record: Record, goal: SentGoal) -> Optional[Failed]:
     """Name the failure of a robot that drives towards an obstacle that is too near from the start."""
     before = [sample.ahead for sample in samples_between(record, goal.time - 0.15, goal.time)]
     after = samples_between(record, goal.time, active_until(record, goal))

@@ -4,7 +4,17 @@ from dataclasses import replace
 from typing import Optional
 
 from ..handout import Limits
-from ..record import PREEMPTED, RECALLED, SUCCEEDED, Goal, Record, feedback_of, results_of, samples_between, status_name
+from ..record import (
+    PREEMPTED,
+    RECALLED,
+    SUCCEEDED,
+    Record,
+    SentGoal,
+    feedback_of,
+    results_of,
+    samples_between,
+    status_name,
+)
 from ..texts import sentences
 from .endings import wrong_ending, wrong_success
 from .output import EXECUTE_RAISED, logged
@@ -44,7 +54,7 @@ def newer_goal(record: Record, limits: Limits) -> Verdict:
 
 
 def _preempted(
-    record: Record, goal: Goal, requested: float, limits: Limits, request: str, hint: str
+    record: Record, goal: SentGoal, requested: float, limits: Limits, request: str, hint: str
 ) -> Optional[Failed]:
     results = results_of(record, goal)
     if not results or results[0].time > requested + limits.preempt_within:
@@ -59,7 +69,7 @@ def _preempted(
     return wrong_ending(record, goal, PREEMPTED, limits)
 
 
-def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint: str) -> str:
+def _unnoticed(record: Record, goal: SentGoal, requested: float, request: str, hint: str) -> str:
     """Why a goal did not end in time: its request was noticed late, only while the robot drove, or never."""
     results = results_of(record, goal)
     if not results or results[0].status not in (PREEMPTED, RECALLED):
@@ -84,7 +94,7 @@ def _unnoticed(record: Record, goal: Goal, requested: float, request: str, hint:
     return f"{late}: {IN_EACH}, and does nothing else make the callback wait before it ends the goal?"
 
 
-def _begins_other(record: Record, goal: Goal, requested: float, end: float) -> bool:
+def _begins_other(record: Record, goal: SentGoal, requested: float, end: float) -> bool:
     """Return whether, soon after a request [s], the robot stands still or the server tells of another goal."""
     others = [it for it in record.feedback if it.id != goal.id and requested < it.time < requested + SILENT]
     waiting = samples_between(record, requested + SILENT, end - ENDS)

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Iterator, List, NamedTuple, Optional, Sequence
 
 from ..handout import HEADING_TOLERANCE, Limits
-from ..record import Command, Goal, Record, active_until, errors_at, samples_between
+from ..record import Command, Record, SentGoal, active_until, errors_at, samples_between
 from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
@@ -37,7 +37,7 @@ def _in_force(record: Record) -> Iterator[Command]:
             yield replace(newest, time=sample.time)
 
 
-def _situations(record: Record, goal: Goal, low: float, high: float) -> List[Situation]:
+def _situations(record: Record, goal: SentGoal, low: float, high: float) -> List[Situation]:
     """Commands sent far from the goal, after |angle error| was within [low, high] for a WINDOW."""
     end = active_until(record, goal) - 1e-6
     situations = []
@@ -67,7 +67,7 @@ def turns_to_goal(record: Record, limits: Limits) -> Verdict:
     return PASSED if judged else NotReached("no command was given while angle_error was large")
 
 
-def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], limits: Limits) -> Optional[Failed]:
+def _moves_first(record: Record, goal: SentGoal, situations: Sequence[Situation], limits: Limits) -> Optional[Failed]:
     """Name the failure of a robot that drives off when the goal comes, and then turns as it should."""
     first = next((command for command in record.commands if command.time >= goal.time - 1e-6), None)
     driving = [abs(it.command.v) > limits.driving for it in situations]
@@ -82,7 +82,7 @@ def _moves_first(record: Record, goal: Goal, situations: Sequence[Situation], li
     return Failed(NOT_DRIVING, seen, first.time, cause, Kind.MOVES_FIRST)
 
 
-def _aligned_before(record: Record, goal: Goal, limits: Limits) -> float:
+def _aligned_before(record: Record, goal: SentGoal, limits: Limits) -> float:
     """The first time [s] at which the robot faced the goal; infinity if it never did."""
     errors = ((sample.time, errors_at(sample, goal)[1]) for sample in samples_between(record, goal.time, math.inf))
     return next((time for time, angle in errors if abs(angle) < limits.turn_beyond), math.inf)
@@ -125,7 +125,7 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
     return None
 
 
-def _never_turned(record: Record, goal: Goal, limits: Limits) -> Optional[Failed]:
+def _never_turned(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """Name the failure of a robot that did not face the goal and got no command to turn."""
     end = active_until(record, goal)
     start = samples_between(record, goal.time, goal.time)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Callable, Dict, Mapping, Optional, Sequence, Union
 
 from ..handout import Limits
-from ..record import ABORTED, PREEMPTED, SUCCEEDED, Goal, Record
+from ..record import ABORTED, PREEMPTED, SUCCEEDED, Record, SentGoal
 
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
@@ -74,7 +74,7 @@ class Failed:
     time: float
     cause: str
     kind: Optional[Kind] = None
-    goal: Optional[Goal] = None
+    goal: Optional[SentGoal] = None
 
 
 Verdict = Union[Passed, NotReached, Failed]

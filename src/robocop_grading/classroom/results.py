@@ -14,7 +14,7 @@ from robocop_hosting import tree
 
 from ..checks import Failed
 from ..checks.verdict import without_figures
-from ..grades import CheckResult, Grade, Outcome, total
+from ..grades import CheckOutcome, CheckResult, Grade, total
 from ..plan import PARTS, Plan
 from ..report.write import render
 from .summary import Summary
@@ -42,7 +42,7 @@ class StoredGrade(Grade):
 
     def points_of(self, part: str) -> Optional[float]:
         """Points of the server or the bridge, without extra points; None if that part was not handed in."""
-        checks = [it for it in self.checks if it.part == part and it.outcome is not Outcome.NOT_HANDED_IN]
+        checks = [it for it in self.checks if it.part == part and it.outcome is not CheckOutcome.NOT_HANDED_IN]
         return total(check.points for check in checks if not check.extra) if checks else None
 
     def outcomes(self, plan: Plan) -> List[str]:
@@ -103,7 +103,7 @@ class Results:
 def _check(raw: Mapping[str, Any]) -> CheckResult:
     """A check's result as report.json has it."""
     failed = raw["failure"] and Failed(*(raw["failure"][it] for it in ("expected", "seen", "time", "cause")))
-    values = {**raw, "outcome": Outcome(raw["outcome"]), "failure": failed, "points_available": raw["of"]}
+    values = {**raw, "outcome": CheckOutcome(raw["outcome"]), "failure": failed, "points_available": raw["of"]}
     return CheckResult(**{it.name: values[it.name] for it in fields(CheckResult)})
 
 
@@ -157,7 +157,7 @@ def _checks(results: Sequence[StoredGrade], plan: Plan) -> Iterator[Dict[str, An
             if it.failure is not None and not it.follows:
                 causes[it.name][it.failure.cause] += 1
     for check, outcomes in zip(plan.checks, counts or [collections.Counter()] * len(plan.checks)):
-        tried = len(results) - outcomes[Outcome.NOT_HANDED_IN.value] - outcomes[""]
+        tried = len(results) - outcomes[CheckOutcome.NOT_HANDED_IN.value] - outcomes[""]
         frequent = _most_frequent(causes[check.name])
         yield {"check": check, "outcomes": outcomes, "tried": tried, "causes": frequent}
 

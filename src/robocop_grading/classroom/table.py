@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import Any, List, Mapping, Sequence
 
 from ..files.exports import Person
-from ..grades import Outcome
+from ..grades import CheckOutcome
 from ..plan import PARTS, Plan
 from ..texts import printable, shortened
 from .results import StoredGrade
@@ -39,7 +39,7 @@ def table(
         points: List[Any] = ["", plan.points, *[""] * (1 + len(PARTS))]
         if result.is_judged:
             of_parts = [result.points_of(part) for part in PARTS]
-            shown = [Outcome.NOT_HANDED_IN.value if number is None else number for number in of_parts]
+            shown = [CheckOutcome.NOT_HANDED_IN.value if number is None else number for number in of_parts]
             points = [result.points, plan.points, result.extra, *shown]
         who = [*map(_plain, people.get(result.name, Person())), points[0]] if people else []
         said = [_plain(" | ".join(texts)) for texts in (result.problems, result.notes)]

@@ -13,7 +13,7 @@ from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MultipleLocator
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE, STOP_DISTANCE
-from ..record import TERMINAL, Goal, Record, Sample, active_until, errors_at, status_name
+from ..record import TERMINAL, Record, Sample, SentGoal, active_until, errors_at, status_name
 
 BLUE, ORANGE, GREEN, RED, GREY = "#1f6fb4", "#d9730d", "#2c8a3d", "#c62828", "#777777"
 STATE_COLOURS = {"ACTIVE": BLUE, "SUCCEEDED": GREEN, "ABORTED": RED, "PREEMPTED": ORANGE}
@@ -124,7 +124,7 @@ def _near(x: float, y: float) -> bool:
     return math.hypot(x, y) < MAX_DISTANCE
 
 
-def _name(goal: Goal) -> str:
+def _name(goal: SentGoal) -> str:
     """A goal's id, shortened and without control characters."""
     return "".join(character for character in goal.id[-24:] if character.isprintable())
 
@@ -163,7 +163,7 @@ def _track(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> Non
         axis.set_major_locator(MultipleLocator(0.5 if largest < 2.0 else 1.0))
 
 
-def _on_way(record: Record) -> List[Tuple[Sample, Goal]]:
+def _on_way(record: Record) -> List[Tuple[Sample, SentGoal]]:
     """Samples with the goal that was active."""
     pairs = []
     for goal, newer in zip(record.goals, [*record.goals[1:], None]):

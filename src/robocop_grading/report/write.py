@@ -16,7 +16,7 @@ from aro_robocop_goto_as.cli.program import ROOT
 from .. import faults
 from ..checks import CHECKS
 from ..errors import GradingSetupError
-from ..grades import CheckResult, Grade, Mistake, Outcome, scored
+from ..grades import CheckOutcome, CheckResult, Grade, Mistake, scored
 from ..judge import Records
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
@@ -96,7 +96,7 @@ def as_classroom(grade: Grade) -> Dict[str, object]:
 
 
 def _github_test(check: CheckResult) -> Dict[str, object]:
-    passed = check.outcome is Outcome.PASSED
+    passed = check.outcome is CheckOutcome.PASSED
     return {
         "name": check.marked(check.sentence),
         "status": "pass" if passed else "fail",
@@ -113,7 +113,7 @@ def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
     """The content of results.json: gradescope-autograders.readthedocs.io, section "Autograder output"."""
     tests = []
     for check in grade.checks:
-        passed = check.outcome is Outcome.PASSED
+        passed = check.outcome is CheckOutcome.PASSED
         test: Dict[str, object] = {
             "name": printable_lines(check.marked(check.sentence)),
             "number": f"{check.part}.{check.name}",
@@ -170,7 +170,7 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, replays: _Replays) ->
                 "part": part,
                 "record": record,
                 "about": about.get(record.name, ""),
-                "failed": [check.name for check in checks if check.outcome is Outcome.FAILED],
+                "failed": [check.name for check in checks if check.outcome is CheckOutcome.FAILED],
                 "replay": replays.of(part, record),
                 "plots": [svg for svg in (_plot(plot, record, []) for plot in SCENARIO_PLOTS[part]) if svg],
                 "lines": record.lines[:MAX_LINES],

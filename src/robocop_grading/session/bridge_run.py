@@ -83,7 +83,7 @@ class BridgeRun(Run):
         assert self.server is not None
         message.goal_id = self.server.identified(message.goal_id)
         position, name = message.goal.position, message.goal_id.id
-        self.add("goals", rec.Goal(name, position.x, position.y, self.stage.now, ""))
+        self.add("goals", rec.SentGoal(name, position.x, position.y, self.stage.now, ""))
         self._note_if_cancelled(message.goal_id)
         if self.server.add(message):
             self.add("statuses", rec.Status(self.stage.now, name, rec.PENDING))

@@ -158,13 +158,13 @@ class ServerRun(Run):
             self.settle(AFTER)
         return problem
 
-    def _send(self, step: Step) -> rec.Goal:
+    def _send(self, step: Step) -> rec.SentGoal:
         name = f"goal-{self.stage.now:.1f}"  # says nothing about the scenario to the node
         x, y = step.goal
         if step.of == "robot":
             there = compose(self.stage.odom_from_footprint(), Pose2D(x, y))
             x, y = there.x, there.y
-        goal = rec.Goal(name, x, y, self.stage.now, step.ends or "PREEMPTED")
+        goal = rec.SentGoal(name, x, y, self.stage.now, step.ends or "PREEMPTED")
         self.add("goals", goal)
         message = GoToPositionActionGoal(goal=GoToPositionGoal())
         message.header.stamp = message.goal_id.stamp = self.stage.stamp
@@ -175,7 +175,7 @@ class ServerRun(Run):
         self.topics.publish(GOAL, message)
         return goal
 
-    def _advance(self, goal: rec.Goal, seconds: float) -> str:
+    def _advance(self, goal: rec.SentGoal, seconds: float) -> str:
         for _ in range(round(seconds / TICK)):
             if goal.id in self.ended:
                 return "the goal ended too early"
@@ -184,7 +184,7 @@ class ServerRun(Run):
                 return problem
         return ""
 
-    def _until_end(self, goal: rec.Goal) -> str:
+    def _until_end(self, goal: rec.SentGoal) -> str:
         """Tick until the goal has ended; returns the problem, or an empty text.
 
         Progress towards an older goal that has not ended counts as well. When one has ended, the time starts anew.

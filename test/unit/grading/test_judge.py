@@ -8,7 +8,7 @@ import pytest
 from grading_records import GOAL, PLAN, RIGHT, changed, commanded, fed_back, graded
 
 from robocop_grading import record as rec
-from robocop_grading.grades import CheckResult, Outcome
+from robocop_grading.grades import CheckOutcome, CheckResult
 from robocop_grading.judge import judge
 from robocop_grading.plan import CheckPlan
 from robocop_grading.record import Record
@@ -145,13 +145,13 @@ def test_mistakes_are_sorted_by_the_points_that_they_and_what_follows_from_them_
 
 def test_check_that_passed_names_the_first_scenario_that_it_examined() -> None:
     check = checks_of(RIGHT, replace(RIGHT, name="right"))["reaches_goal"]
-    assert (check.outcome, check.scenario) == (Outcome.PASSED, "left")
+    assert (check.outcome, check.scenario) == (CheckOutcome.PASSED, "left")
 
 
 def test_interrupted_scenario_fails_its_checks_with_the_reason_and_the_other_part_is_not_graded() -> None:
     grade = judge("anna", SMALL, {"server": {"start": START}}, {"server": "time-out: it was at left"})
     outcomes = {check.name: check.outcome for check in grade.checks}
-    assert (outcomes["action_server"], outcomes["turns_to_goal"]) == (Outcome.PASSED, Outcome.FAILED)
+    assert (outcomes["action_server"], outcomes["turns_to_goal"]) == (CheckOutcome.PASSED, CheckOutcome.FAILED)
     assert all("time-out: it was at left" in check.words for check in grade.checks if check.failure is not None)
     assert (
         grade.points_available == 5.0
@@ -183,7 +183,7 @@ def test_extra_check_that_failed_has_no_score_on_gradescope_and_is_no_failure_on
     (extra,) = [check for check in grade.checks if check.extra]
     tests = cast("list[dict[str, Any]]", as_gradescope(grade, PLAN)["tests"])
     (shown,) = [test for test in tests if test["number"] == f"bridge.{extra.name}"]
-    assert extra.outcome is not Outcome.PASSED and not {"score", "max_score", "status"}.intersection(shown)
+    assert extra.outcome is not CheckOutcome.PASSED and not {"score", "max_score", "status"}.intersection(shown)
     assert extra.name not in str(as_classroom(grade))
 
 

@@ -10,7 +10,7 @@ import pytest
 from grading_records import RIGHT, graded
 
 from robocop_grading import record as rec
-from robocop_grading.grades import Grade, Outcome
+from robocop_grading.grades import CheckOutcome, Grade
 from robocop_grading.record import Record
 
 SCENARIOS = ("left", "far")
@@ -82,8 +82,8 @@ def possible(names: Sequence[str]) -> bool:
 def expect_explained(grade: Grade, alone: Sequence[Grade]) -> None:
     """The report of several mistakes, beside that of each of them alone."""
     assert not grade.tracebacks and grade.mistakes
-    lost = {check.name for check in grade.checks if check.outcome is not Outcome.PASSED}
-    lost_alone = {check.name for it in alone for check in it.checks if check.outcome is not Outcome.PASSED}
+    lost = {check.name for check in grade.checks if check.outcome is not CheckOutcome.PASSED}
+    lost_alone = {check.name for it in alone for check in it.checks if check.outcome is not CheckOutcome.PASSED}
     assert lost <= lost_alone
     failed_alone = {name for it in alone for name in it.failed()}
     assert {mistake.check.name for mistake in grade.mistakes} <= failed_alone

@@ -11,23 +11,23 @@ from robocop_grading.checks import Failed
 from robocop_grading.classroom.results import StoredGrade
 from robocop_grading.classroom.table import table
 from robocop_grading.cli import as_text, progress
-from robocop_grading.grades import CheckResult, Grade, Outcome, completed
+from robocop_grading.grades import CheckOutcome, CheckResult, Grade, completed
 from robocop_grading.plan import BRIDGE_SCENARIOS, Plan
 from robocop_grading.report.write import as_classroom, as_gradescope, as_json, write
 
 MISTAKE = Failed("a goal", "none", 1.0, "No goal was sent.")
-FORWARDS = CheckResult("forwards_goal", "bridge", "A click is a goal.", Outcome.PASSED, 2.0, 2.0, False)
-FRAME = CheckResult("goal_frame", "bridge", "Frames are transformed.", Outcome.PASSED, 1.0, 1.0, True)
+FORWARDS = CheckResult("forwards_goal", "bridge", "A click is a goal.", CheckOutcome.PASSED, 2.0, 2.0, False)
+FRAME = CheckResult("goal_frame", "bridge", "Frames are transformed.", CheckOutcome.PASSED, 1.0, 1.0, True)
 
 
 def failed(check: CheckResult) -> CheckResult:
     """The check, failed."""
-    return replace(check, outcome=Outcome.FAILED, points=0.0, failure=MISTAKE)
+    return replace(check, outcome=CheckOutcome.FAILED, points=0.0, failure=MISTAKE)
 
 
 def blocked(check: CheckResult, by: CheckResult) -> CheckResult:
     """The check, not reached because another one failed."""
-    return replace(check, outcome=Outcome.NOT_REACHED, points=0.0, follows=by.name, why="no goal")
+    return replace(check, outcome=CheckOutcome.NOT_REACHED, points=0.0, follows=by.name, why="no goal")
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_every_list_marks_extra_checks_and_adds_up_the_others_only() -> None:
 
 def test_part_that_is_not_handed_in_counts_the_same_in_every_report(tmp_path) -> None:
     server = [it for it in PLAN.checks if it.part == "server"]
-    checks = [CheckResult(it.name, "server", "", Outcome.PASSED, it.points, it.points, it.extra) for it in server]
+    checks = [CheckResult(it.name, "server", "", CheckOutcome.PASSED, it.points, it.points, it.extra) for it in server]
     grade = completed(Grade("anna", tuple(checks)), PLAN)
     words = "5 of 8 points, 0 of 1 extra"
     assert not grade.all_right and grade.words == words

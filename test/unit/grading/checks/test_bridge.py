@@ -22,7 +22,7 @@ def _clicked(x: float, y: float, *lines: Tuple[float, str], servers: Tuple[str, 
         "click",
         "bridge",
         servers=servers,
-        goals=(rec.Goal("g", x, y, 0.0, ""),),
+        goals=(rec.SentGoal("g", x, y, 0.0, ""),),
         clicks=(rec.Click(0.0, "odom", 1.2, -0.4, 1.2, -0.4),),
         statuses=tuple(rec.Status(time, "g", state) for time, state in ((0, 0), (0, rec.ACTIVE), (20, rec.SUCCEEDED))),
         lines=tuple(rec.Line(time, text) for time, text in lines),
@@ -115,7 +115,7 @@ def _driven(report: Callable[[float], Iterable[str]], period: float) -> Record:
     """A bridge whose timer reports these lines about a time."""
     goals, statuses = [], []
     for number, (sent, active, end) in enumerate(DRIVES):
-        goals.append(rec.Goal(str(number), 1.2, -0.4, sent, ""))
+        goals.append(rec.SentGoal(str(number), 1.2, -0.4, sent, ""))
         for time, state in ((sent, rec.PENDING), (sent, rec.ACTIVE), (sent + active, end)):
             statuses.append(rec.Status(time, str(number), state))
     times = [1.0 + period * number for number in range(1, round(55.4 / period) + 1)]
@@ -224,7 +224,7 @@ def _in_frame(frame: str, goal: Pose2D) -> Record:
         "bridge",
         samples=(rec.Sample(0.9, *ROBOT, *IN_WORLD, 0.0, 0.0, 9.0, False),),
         clicks=(rec.Click(1.0, frame, 1.0, 0.2, there.x, there.y),),
-        goals=(rec.Goal("g", goal.x, goal.y, 1.0, ""),),
+        goals=(rec.SentGoal("g", goal.x, goal.y, 1.0, ""),),
     )
 
 
@@ -280,7 +280,7 @@ def test_wrong_type_of_a_topic_is_named(mark: str, topic: str, found: str, expec
 
 def _replaced(*cancels: rec.Cancel, preempted: str = "older", older_x: float = 1.2) -> Record:
     """A click and a newer one become goals; the one of the id `preempted` is cancelled."""
-    goals = rec.Goal("older", older_x, -0.4, 1.0, ""), rec.Goal("newer", -0.6, 0.9, 5.0, "")
+    goals = rec.SentGoal("older", older_x, -0.4, 1.0, ""), rec.SentGoal("newer", -0.6, 0.9, 5.0, "")
     statuses = (rec.Status(5.0, preempted, rec.PREEMPTED),)
     return Record("replace", "bridge", clicks=(BEFORE, NEWER), goals=goals, cancels=cancels, statuses=statuses)
 

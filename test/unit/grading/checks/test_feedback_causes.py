@@ -9,7 +9,7 @@ from grading_records import GOAL, PLAN, RIGHT
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from robocop_grading.judge import CheckResult, judge
-from robocop_grading.record import Feedback, Goal, Sample, errors_at
+from robocop_grading.record import Feedback, Sample, SentGoal, errors_at
 
 MIRRORED = tuple(
     replace(at, y=-at.y, yaw=-at.yaw, world_y=-15.0 - at.world_y, world_yaw=at.world_yaw - 2.0 * at.yaw)
@@ -26,7 +26,7 @@ DRIVES = {  # scenario: how the robot drives, and where its goal is
 class Seen:
     """What a server calculates its errors from."""
 
-    def __init__(self, at: Sample, goal: Goal) -> None:
+    def __init__(self, at: Sample, goal: SentGoal) -> None:
         self.at, self.goal, self.yaw = at, goal, at.yaw
         self.dx, self.dy = goal.x - at.x, goal.y - at.y
         self.direction = math.atan2(self.dy, self.dx)
@@ -37,7 +37,9 @@ def wrap(angle: float) -> float:
     return math.atan2(math.sin(angle), math.cos(angle))
 
 
-def fed_back(samples: Tuple[Sample, ...], goal: Goal, name: str, formula: Callable[[Seen], float]) -> List[Feedback]:
+def fed_back(
+    samples: Tuple[Sample, ...], goal: SentGoal, name: str, formula: Callable[[Seen], float]
+) -> List[Feedback]:
     """The feedback of a server with a wrong formula of one error."""
     seen = [Seen(at, goal) for at in samples]
     right = (replace(it, position_error=s.distance, angle_error=s.angle) for it, s in zip(RIGHT.feedback, seen))
@@ -78,7 +80,7 @@ ANGLE: List[Tuple[Callable[[Seen], float], str]] = [
 ]
 
 
-def judged(feedback: Callable[[Tuple[Sample, ...], Goal], List[Feedback]], **fields: Any) -> Dict[str, CheckResult]:
+def judged(feedback: Callable[[Tuple[Sample, ...], SentGoal], List[Feedback]], **fields: Any) -> Dict[str, CheckResult]:
     """The results by check of a server that gives this feedback on its drives; `fields` are those of the first one."""
     records = {}
     for name, (samples, x, y) in DRIVES.items():
@@ -114,7 +116,7 @@ def test_cause_of_wrong_errors_is_the_formula_that_leads_to_them(
     ],
 )
 def test_errors_of_an_old_pose_are_one_mistake_that_is_named(shown: Callable[[int], int], words: str) -> None:
-    def feedback(samples: Tuple[Sample, ...], goal: Goal) -> List[Feedback]:
+    def feedback(samples: Tuple[Sample, ...], goal: SentGoal) -> List[Feedback]:
         right = fed_back(samples, goal, "position_error", lambda seen: seen.distance)
         return [replace(right[shown(number)], time=it.time) for number, it in enumerate(right)]
 
@@ -127,7 +129,7 @@ def test_errors_of_an_old_pose_are_one_mistake_that_is_named(shown: Callable[[in
 def test_pose_counted_from_the_start_of_the_node_is_named() -> None:
     started = Pose2D(0.4, 0.1, 0.6)
 
-    def feedback(samples: Tuple[Sample, ...], goal: Goal) -> List[Feedback]:
+    def feedback(samples: Tuple[Sample, ...], goal: SentGoal) -> List[Feedback]:
         first = started if samples is RIGHT.samples and goal.x == 1.0 else Pose2D()
         poses = [compose(inverse(first), Pose2D(at.x, at.y, at.yaw)) for at in samples]
         errors = [errors_at(pose, goal) for pose in poses]
