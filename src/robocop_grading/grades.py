@@ -121,8 +121,10 @@ class Grade:
 
     @property
     def words(self) -> str:
-        """The points scored, as in "7.5 of 8 points, 1 of 1 extra"."""
-        return points_in_words(self.points, self.points_available, self.extra, self.extra_available)
+        """The points scored, as in "7.5 of 8 points, 1 of 1 extra"; no words for a kind without points."""
+        words = [f"{self.points:g} of {self.points_available:g} points"] if self.points_available else []
+        words += [f"{self.extra:g} of {self.extra_available:g} extra"] if self.extra_available else []
+        return ", ".join(words) or "nothing was judged"
 
     @property
     def all_right(self) -> bool:
@@ -176,10 +178,3 @@ def completed(grade: Grade, plan: Plan) -> Grade:
 def total(points: Iterable[float]) -> float:
     """The sum of points without rounding errors."""
     return round(sum(points, 0.0), 6)
-
-
-def points_in_words(points: float, available: float, extra: float, extra_available: float) -> str:
-    """The points out of those available, in words, with extra points apart; no words for a kind without points."""
-    words = [f"{points:g} of {available:g} points"] if available else []
-    words += [f"{extra:g} of {extra_available:g} extra"] if extra_available else []
-    return ", ".join(words) or "nothing was judged"

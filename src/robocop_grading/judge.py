@@ -10,7 +10,7 @@ from .checks.verdict import Kind
 from .faults import Faults
 from .grades import CheckOutcome, CheckResult, Grade
 from .plan import CheckPlan, Plan
-from .reasons import Reasons
+from .reasons import with_reasons
 from .record import Record
 from .texts import sentences
 
@@ -31,7 +31,7 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
     faults = Faults()
     for part, by_name in records.items():
         own = [_judge(it, plan, by_name, problems.get(part, ""), faults) for it in plan.checks if it.part == part]
-        checks += faults.tried("what follows from what", own, _with_reasons, own, by_name, faults)
+        checks += faults.tried("what follows from what", own, with_reasons, own, by_name, faults)
     found = [f"{part}: {problem}" for part, problem in problems.items() if problem]
     notes: List[str] = []
     for part, by_name in records.items():
@@ -84,16 +84,6 @@ def _wrong_types(records: Mapping[str, Record], checks: Sequence[CheckResult]) -
     said = "".join(check.words for check in checks)
     wrong = [wrong_type(record, topic) for record in records.values() for topic, *_ in record.other_types]
     return [it for it in wrong if it not in said]
-
-
-def _with_reasons(results: List[CheckResult], records: Mapping[str, Record], faults: Faults) -> List[CheckResult]:
-    """One part's results, each of which names the check with which its failure began."""
-    failed = {result.name: result for result in results if result.failure is not None}
-    failures = {name: it.failure for name, it in failed.items() if it.failure is not None}
-    where = {name: records[it.scenario] for name, it in failed.items() if it.scenario in records}
-    table = Reasons(failures, where, faults)
-    first = table.first([it.name for it in results if it.outcome is not CheckOutcome.PASSED])
-    return [replace(it, follows="" if first.get(it.name, it.name) == it.name else first[it.name]) for it in results]
 
 
 def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str, faults: Faults) -> CheckResult:

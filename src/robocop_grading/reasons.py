@@ -1,45 +1,47 @@
 """For each failure of one part the check with which it began, by the table of what follows from what."""
 
-from typing import Callable, Dict, List, Mapping, Sequence
+from dataclasses import replace
+from typing import Dict, List, Mapping, Sequence
 
 from .checks.consequences import FOLLOWS
 from .checks.verdict import Failed, Kind, without_figures
 from .faults import Faults
+from .grades import CheckOutcome, CheckResult
 from .record import Record
 
 UNRECORDED = (Kind.NOT_REACHED, Kind.INCOMPLETE)  # a row for any kind does not apply to these
 
 
-class Reasons:
-    """Applies the table to the failures of one part, by check in the plan's order."""
+def with_reasons(results: List[CheckResult], records: Mapping[str, Record], faults: Faults) -> List[CheckResult]:
+    """One part's results, each of which names the check with which it began; the same cause is one mistake."""
+    failures = {it.name: it.failure for it in results if it.failure is not None}
+    where = {it.name: records.get(it.scenario, Record("", "")) for it in results}
+    open_ones = [it.name for it in results if it.outcome is not CheckOutcome.PASSED]
+    first = first_reasons({name: reasons_of(name, failures, where, faults) for name in open_ones})
+    causes = {name: without_figures(failure.cause) for name, failure in failures.items()}
+    same: Dict[str, str] = {}  # by cause
+    for name, cause in causes.items():
+        if first[name] == name:
+            same.setdefault(cause, name)
+    begins = {name: same[causes[it]] if it in causes else it for name, it in first.items()}
+    return [replace(it, follows="" if begins.get(it.name, it.name) == it.name else begins[it.name]) for it in results]
 
-    def __init__(self, failures: Mapping[str, Failed], records: Mapping[str, Record], faults: Faults) -> None:
-        """`records`: by check, the record of the scenario where it failed."""
-        self._failures, self._records, self._faults = failures, records, faults
 
-    def of(self, name: str) -> List[str]:
-        """The failed checks from which a check's failure, or that it is not reached, follows; in the table's order."""
-        failure = self._failures.get(name)
-        kind = failure.kind if failure else Kind.NOT_REACHED
-        rows = [row for row in FOLLOWS if not row.later or name in row.later.split()]
-        rows = [row for row in rows if row.kind is kind or (row.kind is None and kind not in UNRECORDED)]
-        rows = [row for row in rows if row.earlier in self._failures and row.earlier != name]
-        return [row.earlier for row in rows if row.when is None or self._holds(row.when, name, row.earlier)]
+def reasons_of(name: str, failures: Mapping[str, Failed], where: Mapping[str, Record], faults: Faults) -> List[str]:
+    """The failed checks from which a check's failure, or that it is not reached, follows; in the table's order.
 
-    def _holds(self, when: Callable[[Record, Failed, Failed], bool], name: str, earlier: str) -> bool:
-        record = self._records.get(name, Record("", ""))
-        both = self._failures[name], self._failures[earlier]
-        return self._faults.tried(f"whether {name} follows from {earlier}", False, when, record, *both)
-
-    def first(self, names: Sequence[str]) -> Dict[str, str]:
-        """For each of the checks the one with which it began; what begins with the same cause is one mistake."""
-        first = first_reasons({name: self.of(name) for name in names})
-        same: Dict[str, str] = {}  # by cause
-        causes = {name: without_figures(failure.cause) for name, failure in self._failures.items()}
-        for name, cause in causes.items():
-            if first[name] == name:
-                same.setdefault(cause, name)
-        return {name: same[causes[it]] if it in causes else it for name, it in first.items()}
+    `where`: by check, the record of the scenario where it failed.
+    """
+    kind = failures[name].kind if name in failures else Kind.NOT_REACHED
+    reasons = []
+    for later, of_kind, earlier, when in FOLLOWS:
+        if (later and name not in later.split()) or earlier not in failures or earlier == name:
+            continue
+        if of_kind is kind or (of_kind is None and kind not in UNRECORDED):
+            what = f"whether {name} follows from {earlier}"
+            if when is None or faults.tried(what, False, when, where[name], failures[name], failures[earlier]):
+                reasons.append(earlier)
+    return reasons
 
 
 def first_reasons(reasons: Mapping[str, Sequence[str]]) -> Dict[str, str]:

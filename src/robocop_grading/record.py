@@ -48,6 +48,11 @@ class SentGoal:
     time: float
     ends: str
 
+    def errors_at(self, pose: Union[Sample, Pose2D]) -> Tuple[float, float]:
+        """From a pose in odom, the true position_error [m] and angle_error [rad], as the handout defines them."""
+        dx, dy = self.x - pose.x, self.y - pose.y
+        return math.hypot(dx, dy), wrapped(math.atan2(dy, dx) - pose.yaw)
+
 
 @dataclass(frozen=True)
 class Cancel:
@@ -171,6 +176,24 @@ class Record:
     deaths: Tuple[Death, ...] = ()
     marks: Dict[str, float] = field(default_factory=dict)  # named moments of the scenario [s]
 
+    def results_of(self, goal: SentGoal) -> List[Result]:
+        """The results of a goal in order of arrival; a correct server sends one."""
+        return [result for result in self.results if result.id == goal.id]
+
+    def feedback_of(self, goal: SentGoal) -> List[Feedback]:
+        """The feedback about a goal in order of arrival."""
+        return [message for message in self.feedback if message.id == goal.id]
+
+    def active_until(self, goal: SentGoal) -> float:
+        """When a goal got its first terminal state or result; infinity if it got none."""
+        ends = [result.time for result in self.results_of(goal)]
+        ends += [change.time for change in self.statuses if change.id == goal.id and change.status in TERMINAL]
+        return min(ends, default=math.inf)
+
+    def samples_between(self, start: float, end: float) -> List[Sample]:
+        """Samples within [start, end]; both ends are included in spite of rounding."""
+        return [sample for sample in self.samples if start - 1e-6 <= sample.time <= end + 1e-6]
+
 
 def status_name(status: int) -> str:
     """The name of a status, also of an undefined one."""
@@ -191,34 +214,6 @@ def read(kind: Type[T], path: Path) -> T:
     return value
 
 
-def results_of(record: Record, goal: SentGoal) -> List[Result]:
-    """The results of a goal in order of arrival; a correct server sends one."""
-    return [result for result in record.results if result.id == goal.id]
-
-
-def feedback_of(record: Record, goal: SentGoal) -> List[Feedback]:
-    """The feedback about a goal in order of arrival."""
-    return [message for message in record.feedback if message.id == goal.id]
-
-
-def active_until(record: Record, goal: SentGoal) -> float:
-    """When a goal got its first terminal state or result; infinity if it got none."""
-    ends = [result.time for result in results_of(record, goal)]
-    ends += [change.time for change in record.statuses if change.id == goal.id and change.status in TERMINAL]
-    return min(ends, default=math.inf)
-
-
-def samples_between(record: Record, start: float, end: float) -> List[Sample]:
-    """Samples within [start, end]; both ends are included in spite of rounding."""
-    return [sample for sample in record.samples if start - 1e-6 <= sample.time <= end + 1e-6]
-
-
 def wrapped(angle: float) -> float:
     """An angle [rad] wrapped to +-pi; NaN and infinity are returned unchanged."""
     return wrap_angle(angle) if math.isfinite(angle) else angle
-
-
-def errors_at(sample: Union[Sample, Pose2D], goal: SentGoal) -> Tuple[float, float]:
-    """From a pose in odom, the true position_error [m] and angle_error [rad], as the handout defines them."""
-    dx, dy = goal.x - sample.x, goal.y - sample.y
-    return math.hypot(dx, dy), wrapped(math.atan2(dy, dx) - sample.yaw)

@@ -27,7 +27,7 @@ from robocop_hosting.scripts import (
     part_of,
 )
 from robocop_hosting.tree import read_text
-from robocop_hosting.workspace import Environment, compat_environment, places, workspace_name
+from robocop_hosting.workspace import CPP, Environment, compat_environment, places, workspace_name
 
 from .advice import advice, next_todo
 from .errors import GradingError
@@ -38,7 +38,6 @@ from .sandbox.build import build, runner_in
 
 LAB = "aro_robocop_goto_as"
 AGENT = Path(__file__).resolve().parent / "agent"
-CPP = (".cc", ".cpp", ".cxx")  # suffixes
 CHANNEL = "CHANNEL"  # stands for the argument with which the agent reaches the grader
 
 

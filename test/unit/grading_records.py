@@ -39,7 +39,7 @@ def drive() -> Record:
         samples.append(rec.Sample(t, x, y, yaw, x + 40.0, y - 15.0, yaw + 0.7, v, w, math.inf, False))
         if t <= 10.0:
             commands.append(rec.Command(t, 0.16 if moving else 0.0, 0.39 if t < 2.0 else 0.0))
-            error = rec.errors_at(samples[-1], GOAL)
+            error = GOAL.errors_at(samples[-1])
             feedback.append(rec.Feedback(t, "g", error[0], error[1]))
     return Record(
         "left",

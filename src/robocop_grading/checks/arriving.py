@@ -4,17 +4,7 @@ import math
 from typing import Optional, Sequence
 
 from ..handout import GOAL_RADIUS, Limits
-from ..record import (
-    SUCCEEDED,
-    Record,
-    Sample,
-    SentGoal,
-    active_until,
-    errors_at,
-    feedback_of,
-    samples_between,
-    wrapped,
-)
+from ..record import SUCCEEDED, Record, Sample, SentGoal, wrapped
 from .consequences import ITERATION
 from .endings import of_goals, wrong_ending, wrong_success
 from .turning import MIN_SPEED
@@ -37,12 +27,12 @@ def reaches_goal(record: Record, limits: Limits) -> Verdict:
 
 def _success_too_late(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """Name the failure of a robot that drives on although it is close enough for success."""
-    end = active_until(record, goal)
-    way = [(sample.time, errors_at(sample, goal)[0]) for sample in samples_between(record, goal.time, end)]
+    end = record.active_until(goal)
+    way = [(sample.time, goal.errors_at(sample)[0]) for sample in record.samples_between(goal.time, end)]
     for (before, far), (after, near) in zip(way, way[1:]):
         if near < GOAL_RADIUS <= far:
             reached = before + (after - before) * (far - GOAL_RADIUS) / (far - near)
-            cause = _lateness(record, goal, samples_between(record, reached + LATE, end), limits)
+            cause = _lateness(record, goal, record.samples_between(reached + LATE, end), limits)
             least = min(distance for _, distance in way)
             exact = cause in (WAITS, TURNS) or least < 2.0 * GOAL_RADIUS - limits.reached
             if end - reached <= (LATE_AT_REST if cause == WAITS else LATE) or not exact:
@@ -63,7 +53,7 @@ def _lateness(record: Record, goal: SentGoal, samples: Sequence[Sample], limits:
     drives = any(abs(command.v) > MIN_SPEED for command in record.commands if begin <= command.time < end)
     if not drives and all(abs(sample.v) < limits.standing_v for sample in samples):
         return TURNS if _turned(samples) > LARGE_TURN else WAITS
-    own = [it.position_error for it in feedback_of(record, goal) if it.time < end - ITERATION]
+    own = [it.position_error for it in record.feedback_of(goal) if it.time < end - ITERATION]
     if own and min(own) >= GOAL_RADIUS:
         return (
             f"The robot comes within {GOAL_RADIUS:g} m, but the last position_error in the feedback is {own[-1]:.3f} "
@@ -85,11 +75,11 @@ def goal_behind(record: Record, limits: Limits) -> Verdict:
 
 def _long_turn(record: Record, goal: SentGoal) -> Optional[Failed]:
     """Name the failure of a robot that turned by much more than needed on its way to the goal."""
-    samples = samples_between(record, goal.time, active_until(record, goal))
-    there = next((number for number, it in enumerate(samples) if errors_at(it, goal)[0] < GOAL_RADIUS), len(samples))
+    samples = record.samples_between(goal.time, record.active_until(goal))
+    there = next((number for number, it in enumerate(samples) if goal.errors_at(it)[0] < GOAL_RADIUS), len(samples))
     samples = samples[:there]
     total = _turned(samples)
-    needed = abs(errors_at(samples[0], goal)[1]) if samples else 0.0
+    needed = abs(goal.errors_at(samples[0])[1]) if samples else 0.0
     if total <= needed + 2.0:
         return None
     wanted, seen = f"a turn of about {needed:.1f} rad", f"{total:.1f} rad"
@@ -116,8 +106,8 @@ def already_there(record: Record, limits: Limits) -> Verdict:
 
 def _not_at_once(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """Name the failure of a robot that takes long or moves although it is at the goal."""
-    end = active_until(record, goal)
-    samples = samples_between(record, goal.time, end + limits.stop_within)
+    end = record.active_until(goal)
+    samples = record.samples_between(goal.time, end + limits.stop_within)
     moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)
     turn = _turned(samples)
     if end - goal.time <= AT_ONCE and moved <= 0.05 and turn <= LARGE_TURN:

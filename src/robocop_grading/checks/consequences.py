@@ -4,18 +4,7 @@ from bisect import bisect_right
 from typing import Callable, NamedTuple, Optional, Sequence, TypeVar
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
-from ..record import (
-    Command,
-    Feedback,
-    Record,
-    Sample,
-    SentGoal,
-    active_until,
-    errors_at,
-    feedback_of,
-    results_of,
-    samples_between,
-)
+from ..record import Command, Feedback, Record, Sample, SentGoal
 from .output import NO_STATE_LOGGED, UNCAUGHT, logged
 from .verdict import Failed, Kind
 
@@ -34,7 +23,7 @@ def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
 
 def end_of(record: Record, failure: Failed) -> float:
     """The time [s] until which an event can be a failure's reason: when its goal ended, or its own time if later."""
-    end = active_until(record, failure.goal) if failure.goal else failure.time
+    end = record.active_until(failure.goal) if failure.goal else failure.time
     return max(failure.time, end)
 
 
@@ -66,7 +55,7 @@ def none_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 def silent(record: Record, goal: SentGoal) -> bool:
     """Return whether the server, after it got a goal, neither moved the robot nor published anything about the goal."""
-    told = [*feedback_of(record, goal), *results_of(record, goal)]
+    told = [*record.feedback_of(goal), *record.results_of(goal)]
     return not told and not any(command.time >= goal.time for command in record.commands)
 
 
@@ -83,8 +72,8 @@ def died_before(record: Record, failure: Failed, _earlier: Failed) -> bool:
 def came(record: Record, failure: Failed) -> bool:
     """Return whether the robot came to the goal before the failure."""
     goal = failure.goal
-    there = samples_between(record, goal.time, failure.time) if goal else []
-    return goal is not None and any(errors_at(it, goal)[0] < BELIEVED for it in there)
+    there = record.samples_between(goal.time, failure.time) if goal else []
+    return goal is not None and any(goal.errors_at(it)[0] < BELIEVED for it in there)
 
 
 def astray(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -94,13 +83,13 @@ def astray(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 def believed(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether an end far from the goal fits the position_error that the server reported itself."""
-    own = feedback_of(record, failure.goal) if failure.goal else []
+    own = record.feedback_of(failure.goal) if failure.goal else []
     return bool(own) and own[-1].position_error <= BELIEVED
 
 
 def unaware(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether the server never reported a position_error that means that the goal is reached."""
-    own = feedback_of(record, failure.goal) if failure.goal else []
+    own = record.feedback_of(failure.goal) if failure.goal else []
     end = end_of(record, failure)
     return not any(it.position_error < GOAL_RADIUS and it.time < end - ITERATION for it in own)
 
@@ -115,13 +104,13 @@ def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
     goal = failure.goal
     if goal is None or failure.kind is Kind.TOO_FAR:
         return False
-    own = _latest(feedback_of(record, goal))
+    own = _latest(record.feedback_of(goal))
     true = _latest(record.samples)
     fits = []
     for command in record.commands:
-        if goal.time <= command.time < active_until(record, goal):
+        if goal.time <= command.time < record.active_until(goal):
             told, there = own(command.time), true(command.time)
-            if told and there and not _fits(errors_at(there, goal)[1], command):
+            if told and there and not _fits(goal.errors_at(there)[1], command):
                 fits.append(_fits(told.angle_error, command))
     return len(fits) >= ENOUGH and sum(fits) >= (1.0 - MAX_OTHERS) * len(fits)
 

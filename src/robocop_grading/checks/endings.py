@@ -4,20 +4,7 @@ from dataclasses import replace
 from typing import Callable, Optional
 
 from ..handout import GOAL_RADIUS, Limits
-from ..record import (
-    ABORTED,
-    PREEMPTED,
-    SUCCEEDED,
-    TERMINAL,
-    Record,
-    Result,
-    SentGoal,
-    errors_at,
-    feedback_of,
-    results_of,
-    samples_between,
-    status_name,
-)
+from ..record import ABORTED, PREEMPTED, SUCCEEDED, TERMINAL, Record, Result, SentGoal, status_name
 from ..texts import sentences
 from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged_cause, no_state
 from .topic_use import wrong_type
@@ -41,7 +28,7 @@ EMPTY_RESULT = (
 
 def wrong_ending(record: Record, goal: SentGoal, wanted: int, limits: Limits) -> Optional[Failed]:
     """What went wrong with a goal that did not end in the wanted state; None if it did."""
-    results = results_of(record, goal)
+    results = record.results_of(goal)
     if not results:
         last = record.samples[-1].time if record.samples else goal.time
         problem = record.problem or "the goal got no terminal state and no result"
@@ -52,7 +39,7 @@ def wrong_ending(record: Record, goal: SentGoal, wanted: int, limits: Limits) ->
     if result.status == wanted:
         return None
     collision = _collision(record, goal, result.time)
-    at_end = samples_between(record, result.time - 0.25, result.time)
+    at_end = record.samples_between(result.time - 0.25, result.time)
     stopped = any(sample.ahead <= limits.abort_farthest for sample in at_end)  # where an obstacle has to end the goal
     if (wanted, result.status) == (ABORTED, SUCCEEDED) and not collision and not stopped:
         early = success_too_far(record, goal, limits)
@@ -91,12 +78,12 @@ def narrow_obstacle(record: Record) -> str:
 
 def _collision(record: Record, goal: SentGoal, end: float) -> str:
     """A sentence about the first contact with an obstacle, if there was one."""
-    contacts = [sample for sample in samples_between(record, goal.time, end) if sample.touching]
+    contacts = [sample for sample in record.samples_between(goal.time, end) if sample.touching]
     return f"The robot ran into an obstacle at {contacts[0].time:.1f} s" if contacts else ""
 
 
 def _wrong_state(record: Record, goal: SentGoal, status: int, wanted: int) -> str:
-    end = results_of(record, goal)[0].time
+    end = record.results_of(goal)[0].time
     told = logged_cause(record, end)
     if told:
         return told
@@ -132,12 +119,12 @@ def _asked_to_end(record: Record, goal: SentGoal, end: float) -> bool:
 
 def success_too_far(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """What went wrong with a goal that succeeded away from its position."""
-    result = results_of(record, goal)[0]
-    at_end = samples_between(record, result.time - 0.2, result.time)
-    nearest = min((errors_at(sample, goal)[0] for sample in at_end), default=0.0)
+    result = record.results_of(goal)[0]
+    at_end = record.samples_between(result.time - 0.2, result.time)
+    nearest = min((goal.errors_at(sample)[0] for sample in at_end), default=0.0)
     if nearest <= limits.reached:
         return None
-    own = [it.position_error for it in feedback_of(record, goal) if it.time <= result.time]
+    own = [it.position_error for it in record.feedback_of(goal) if it.time <= result.time]
     kind, cause = Kind.TOO_FAR, TOO_FAR
     if own and own[-1] < GOAL_RADIUS:
         cause = f"The server takes the robot to be at the goal: its own position_error is {own[-1]:.3f} m"
@@ -149,11 +136,11 @@ def success_too_far(record: Record, goal: SentGoal, limits: Limits) -> Optional[
 
 def _at_once(record: Record, goal: SentGoal) -> bool:
     """Return whether a goal has ended too soon to be driven to."""
-    return any(result.time - goal.time < AT_ONCE for result in results_of(record, goal)[:1])
+    return any(result.time - goal.time < AT_ONCE for result in record.results_of(goal)[:1])
 
 
 def _took_longer(record: Record, goal: SentGoal) -> bool:
-    return bool(results_of(record, goal)) and not _at_once(record, goal)
+    return bool(record.results_of(goal)) and not _at_once(record, goal)
 
 
 @check("states")
@@ -169,7 +156,7 @@ def failure_result(record: Record, limits: Limits) -> Verdict:
 
 
 def _result(record: Record, status: int, success: bool) -> Verdict:
-    results = [result for goal in record.goals[:1] for result in results_of(record, goal)[:1]]
+    results = [result for goal in record.goals[:1] for result in record.results_of(goal)[:1]]
     if not results or results[0].status != status:
         return NotReached(f"the goal did not end as {status_name(status)}")
     result = results[0]
@@ -187,9 +174,9 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
     """The robot stands still after a goal has ended, in any state."""
     judged = False
     for number, goal in enumerate(record.goals):
-        for result in results_of(record, goal)[:1]:
+        for result in record.results_of(goal)[:1]:
             stopped = result.time + limits.stop_within
-            after = samples_between(record, stopped, stopped + 0.15)
+            after = record.samples_between(stopped, stopped + 0.15)
             replaced = number + 1 < len(record.goals) and record.goals[number + 1].time < stopped
             if not after or replaced:
                 continue
@@ -223,7 +210,7 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
     """Each goal gets exactly one terminal state, set by the server's own code."""
     judged = False
     for goal in record.goals:
-        results = results_of(record, goal)
+        results = record.results_of(goal)
         if len(results) > 1:
             return Failed("one result", f"{len(results)} results", results[1].time, TWO_STATES)
         judged = judged or bool(results)

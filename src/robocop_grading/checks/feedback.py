@@ -8,7 +8,7 @@ from typing import List, Mapping, Optional, Sequence
 import numpy as np
 
 from ..handout import GOAL_RADIUS, Limits
-from ..record import ERRORS, Record, SentGoal, active_until, errors_at, feedback_of, samples_between, wrapped
+from ..record import ERRORS, Record, SentGoal, wrapped
 from .feedback_age import AGES, LONG_AGES, age_of, repeats
 from .feedback_causes import OTHERWISE, TOLERANCES, UNITS, likely_cause, longest, misses
 from .feedback_hypotheses import ANGLE, OF_POSITION, POSE_TOPIC, POSITION, UNCHANGED, Pair
@@ -62,7 +62,7 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
     wanted = f"about 10 Hz ({limits.feedback_low:g} to {limits.feedback_high:g})"
     for goal in record.goals:
         rate = _rate(record, goal)
-        later = [it.time for it in feedback_of(record, goal) if it.time > active_until(record, goal) + STOPS]
+        later = [it.time for it in record.feedback_of(goal) if it.time > record.active_until(goal) + STOPS]
         if rate is not None:
             judged = True
             if not limits.feedback_low <= rate <= limits.feedback_high:
@@ -76,25 +76,25 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
 
 def _rate(record: Record, goal: SentGoal) -> Optional[float]:
     """Feedback messages per second while a goal was active; None if that was not long enough."""
-    end = min(active_until(record, goal), _arrival(record, goal))
-    count = sum(message.time <= end for message in feedback_of(record, goal))
+    end = min(record.active_until(goal), _arrival(record, goal))
+    count = sum(message.time <= end for message in record.feedback_of(goal))
     return None if end - goal.time < MIN_GOAL_TIME else count / (end - goal.time)
 
 
 def _arrival(record: Record, goal: SentGoal) -> float:
     """When [s] the robot came to the goal, or the recording ended: from then on, the server may have left its loop."""
-    samples = samples_between(record, goal.time, math.inf)
-    there = (sample.time for sample in samples if errors_at(sample, goal)[POSITION] < GOAL_RADIUS)
+    samples = record.samples_between(goal.time, math.inf)
+    there = (sample.time for sample in samples if goal.errors_at(sample)[POSITION] < GOAL_RADIUS)
     return next(there, samples[-1].time if samples else goal.time)
 
 
 def _compared(index: int, record: Record) -> List[Pair]:
     """The feedback messages by which an error is judged, each with the samples that it may be based on."""
     goals = {goal.id: goal for goal in record.goals}
-    starts = {goal.id: (samples_between(record, goal.time, math.inf) or record.samples)[:1] for goal in record.goals}
+    starts = {goal.id: (record.samples_between(goal.time, math.inf) or record.samples)[:1] for goal in record.goals}
     pairs = []
     for message in record.feedback:
-        samples = samples_between(record, message.time - AGE, message.time + 1e-3)
+        samples = record.samples_between(message.time - AGE, message.time + 1e-3)
         if message.id in goals and samples:
             pairs.append(Pair(message, samples, goals[message.id], starts[message.id][0], record.started))
     return [pair for pair in pairs if index == POSITION or pair.truth[POSITION] > NEAR]
@@ -188,7 +188,7 @@ def _is_shifted(record: Record, index: int) -> bool:
     """Return whether an error is wrong even while the true error does not change: then it is not merely old."""
     differences = []
     for pair in _compared(index, record):
-        truths = [errors_at(sample, pair.goal)[index] for sample in pair.samples]
+        truths = [pair.goal.errors_at(sample)[index] for sample in pair.samples]
         if max(truths) - min(truths) < STEADY:
             difference = pair.feedback.errors[index] - truths[-1]
             differences.append(wrapped(difference) if index == ANGLE else difference)

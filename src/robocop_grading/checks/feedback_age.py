@@ -4,7 +4,7 @@ from typing import Optional, Sequence
 
 import numpy as np
 
-from ..record import Record, SentGoal, active_until, errors_at, feedback_of, samples_between
+from ..record import Record, SentGoal
 from .feedback_hypotheses import ANGLE, Pair
 
 AGES = np.arange(0.0, 0.305, 0.01)  # [s] of the pose that feedback may be of
@@ -41,12 +41,12 @@ def repeats(index: int, scenarios: Sequence[Sequence[Pair]]) -> int:
 
 def _differences(record: Record, goal: SentGoal, index: int, ages: np.ndarray) -> np.ndarray:
     """For each message while the true error changes, and each of the ages, the difference from the error of then."""
-    samples = samples_between(record, goal.time - ages[-1] - 0.2, active_until(record, goal))
-    own = feedback_of(record, goal)
+    samples = record.samples_between(goal.time - ages[-1] - 0.2, record.active_until(goal))
+    own = record.feedback_of(goal)
     if len(samples) < 2 or not own:
         return np.zeros((0, len(ages)))
     values = np.array([message.errors[index] for message in own])
-    truth = np.array([errors_at(sample, goal)[index] for sample in samples])
+    truth = np.array([goal.errors_at(sample)[index] for sample in samples])
     truth = np.unwrap(truth) if index == ANGLE else truth
     sampled = [sample.time for sample in samples]
     times = np.array([message.time for message in own])

@@ -7,7 +7,7 @@ from typing import Callable, List, NamedTuple, Sequence, Tuple
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 
-from ..record import Feedback, Sample, SentGoal, errors_at, wrapped
+from ..record import Feedback, Sample, SentGoal, wrapped
 
 POSITION, ANGLE = range(2)  # indices of ERRORS
 UNSURE = 0.3  # [m] nearer to where the goal is taken to be, an inexact position turns its direction too much
@@ -33,7 +33,7 @@ class Pair(NamedTuple):
     @property
     def truth(self) -> Tuple[float, float]:
         """Both true errors."""
-        return errors_at(self.now, self.goal)
+        return self.goal.errors_at(self.now)
 
     @property
     def way(self) -> Tuple[float, float]:
@@ -48,7 +48,7 @@ class Pair(NamedTuple):
     def misread(self, yaw: float) -> Tuple[float, float]:
         """Both errors for a goal that is taken relative to the robot, in a frame turned by `yaw`, when it was sent."""
         there = compose(Pose2D(self.start.x, self.start.y, yaw), Pose2D(self.goal.x, self.goal.y))
-        return errors_at(self.now, replace(self.goal, x=there.x, y=there.y))
+        return replace(self.goal, x=there.x, y=there.y).errors_at(self.now)
 
 
 SENTENCES = {  # of causes, by their names
@@ -128,7 +128,7 @@ def _since_start(pair: Pair, index: int, is_turned: bool) -> float:
     counted = (
         compose(inverse(first), now) if is_turned else Pose2D(now.x - first.x, now.y - first.y, now.yaw - first.yaw)
     )
-    errors = errors_at(counted, pair.goal)
+    errors = pair.goal.errors_at(counted)
     is_unsure = index == ANGLE and errors[POSITION] < UNSURE
     return pair.feedback.angle_error if is_unsure else errors[index]
 
@@ -136,13 +136,13 @@ def _since_start(pair: Pair, index: int, is_turned: bool) -> float:
 def _misplaced(index: int) -> Sequence[Hypothesis]:
     """Poses of the goal or the robot that are mistaken for others."""
     return (
-        ("goal_swapped", lambda p: errors_at(p.now, replace(p.goal, x=p.goal.y, y=p.goal.x))[index]),
-        ("goal_x_missing", lambda p: errors_at(p.now, replace(p.goal, x=0.0))[index]),
-        ("goal_y_missing", lambda p: errors_at(p.now, replace(p.goal, y=0.0))[index]),
-        ("position_swapped", lambda p: errors_at(Pose2D(p.now.y, p.now.x, p.now.yaw), p.goal)[index]),
-        ("position_x_sign", lambda p: errors_at(Pose2D(-p.now.x, p.now.y, p.now.yaw), p.goal)[index]),
-        ("position_y_sign", lambda p: errors_at(Pose2D(p.now.x, -p.now.y, p.now.yaw), p.goal)[index]),
-        ("pose_of_start", lambda p: errors_at(p.start, p.goal)[index]),
+        ("goal_swapped", lambda p: replace(p.goal, x=p.goal.y, y=p.goal.x).errors_at(p.now)[index]),
+        ("goal_x_missing", lambda p: replace(p.goal, x=0.0).errors_at(p.now)[index]),
+        ("goal_y_missing", lambda p: replace(p.goal, y=0.0).errors_at(p.now)[index]),
+        ("position_swapped", lambda p: p.goal.errors_at(Pose2D(p.now.y, p.now.x, p.now.yaw))[index]),
+        ("position_x_sign", lambda p: p.goal.errors_at(Pose2D(-p.now.x, p.now.y, p.now.yaw))[index]),
+        ("position_y_sign", lambda p: p.goal.errors_at(Pose2D(p.now.x, -p.now.y, p.now.yaw))[index]),
+        ("pose_of_start", lambda p: p.goal.errors_at(p.start)[index]),
         ("relative", lambda p: p.misread(p.start.yaw)[index]),
         ("relative", lambda p: p.misread(0.0)[index]),
         ("since_start_of_node", lambda p: _since_start(p, index, True)),
@@ -202,6 +202,6 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
         ("angle_rounded", lambda p: round(p.truth[ANGLE])),
         ("angle_rounded", lambda p: int(p.truth[ANGLE])),
         ("angle_is_distance", lambda p: p.truth[POSITION]),
-        ("direction_once", lambda p: wrapped(errors_at(p.start, p.goal)[ANGLE] + p.start.yaw - p.now.yaw)),
+        ("direction_once", lambda p: wrapped(p.goal.errors_at(p.start)[ANGLE] + p.start.yaw - p.now.yaw)),
     ),
 )

@@ -6,17 +6,7 @@ from dataclasses import replace
 from typing import Mapping, Optional, Sequence
 
 from ..handout import HEADING_TOLERANCE, STOP_DISTANCE, Limits
-from ..record import (
-    ABORTED,
-    STATUS_NAMES,
-    Record,
-    SentGoal,
-    active_until,
-    errors_at,
-    feedback_of,
-    results_of,
-    samples_between,
-)
+from ..record import ABORTED, STATUS_NAMES, Record, SentGoal
 from ..texts import sentences
 from .endings import keeps_moving, narrow_obstacle, of_goals, wrong_ending, wrong_success
 from .output import EXECUTE_RAISED, logged, logged_cause
@@ -60,8 +50,8 @@ def _wrong_abort(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fai
     problem = _approach(record, goal) or wrong_ending(record, goal, ABORTED, limits)
     if problem is not None:
         return problem
-    end = results_of(record, goal)[0].time
-    around = samples_between(record, end - 0.25, end + limits.stop_within)
+    end = record.results_of(goal)[0].time
+    around = record.samples_between(end - 0.25, end + limits.stop_within)
     contact = next((sample.time for sample in around if sample.touching), math.inf)
     if contact <= end:
         cause = narrow_obstacle(record) or "The obstacle was detected too late"
@@ -69,9 +59,9 @@ def _wrong_abort(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fai
     wanted = f"an abort at {STOP_DISTANCE:g} m"
     if logged(record, EXECUTE_RAISED, end, goal.time):
         return Failed(wanted, "an exception", end, logged_cause(record, end), Kind.EXCEPTION, goal)
-    clearances = [sample.ahead for sample in samples_between(record, end - 0.25, end)]
+    clearances = [sample.ahead for sample in record.samples_between(end - 0.25, end)]
     if clearances and min(clearances) > limits.abort_farthest:
-        nearest = min(sample.ahead for sample in samples_between(record, goal.time, end))
+        nearest = min(sample.ahead for sample in record.samples_between(goal.time, end))
         seen = f"an abort at {min(clearances):.2f} m"
         if nearest > limits.abort_farthest:
             return Failed(wanted, seen, end, ABORTED_FAR, Kind.TOO_EARLY, goal)
@@ -81,16 +71,16 @@ def _wrong_abort(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fai
         cause = narrow_obstacle(record) or _late_cause(record, goal, end, clearances[-1])
         return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause)
     if contact < math.inf:
-        cause = keeps_moving(record, results_of(record, goal)[0], contact)
+        cause = keeps_moving(record, record.results_of(goal)[0], contact)
         return Failed("a stop before the obstacle", "contact", contact, cause, Kind.MOVING, goal)
     return None
 
 
 def _late_cause(record: Record, goal: SentGoal, end: float, clearance: float) -> str:
     """Why a goal was aborted at a time [s], when the obstacle was nearer [m] than it should have been."""
-    own = [it for it in feedback_of(record, goal) if it.time <= end]
-    there = samples_between(record, goal.time, end)
-    angles = [own[-1].angle_error, errors_at(there[-1], goal)[1]] if own and there else [0.0]
+    own = [it for it in record.feedback_of(goal) if it.time <= end]
+    there = record.samples_between(goal.time, end)
+    angles = [own[-1].angle_error, goal.errors_at(there[-1])[1]] if own and there else [0.0]
     if all(abs(angle) > HEADING_TOLERANCE for angle in angles):  # it was about to turn
         return (
             f"The robot drove on from {STOP_DISTANCE:g} to {clearance:.2f} m from the obstacle, and the goal was "
@@ -101,8 +91,8 @@ def _late_cause(record: Record, goal: SentGoal, end: float, clearance: float) ->
 
 def _approach(record: Record, goal: SentGoal) -> Optional[Failed]:
     """Name the failure of a robot that drives towards an obstacle that is too near from the start."""
-    before = [sample.ahead for sample in samples_between(record, goal.time - 0.15, goal.time)]
-    after = samples_between(record, goal.time, active_until(record, goal))
+    before = [sample.ahead for sample in record.samples_between(goal.time - 0.15, goal.time)]
+    after = record.samples_between(goal.time, record.active_until(goal))
     nearest = min((sample.ahead for sample in after), default=math.inf)
     if not before or before[-1] >= STOP_DISTANCE - MARGIN or nearest >= before[-1] - MARGIN:
         return None

@@ -6,7 +6,7 @@ import re
 from typing import Iterator, Pattern, Sequence
 
 from ..handout import GOAL_RADIUS, STOP_DISTANCE
-from ..record import Record, active_until, errors_at
+from ..record import Record
 from ..texts import sentences
 
 # How a line at a level begins: as the recording writes /rosout, or as rospy writes it to a terminal.
@@ -55,14 +55,14 @@ def logged_cause(record: Record, end: float) -> str:
 
 def no_state(record: Record, end: float) -> str:
     """A sentence about the goal that ended without a terminal state at about a time [s], and on which path."""
-    goal = min(record.goals, key=lambda it: abs(active_until(record, it) - end), default=None)
+    goal = min(record.goals, key=lambda it: abs(record.active_until(it) - end), default=None)
     near = min(record.samples, key=lambda it: abs(it.time - end), default=None)
     if goal is None or near is None:
         return NO_STATE
     paths = {
         "when the goal was cancelled": any(goal.time < it.time <= end for it in record.cancels),
         "when a newer goal came": any(goal.time < it.time <= end for it in record.goals),
-        "when the goal was reached": errors_at(near, goal)[0] < GOAL_RADIUS,
+        "when the goal was reached": goal.errors_at(near)[0] < GOAL_RADIUS,
         "when an obstacle was ahead": near.ahead < STOP_DISTANCE,
     }
     return ", ".join([NO_STATE, *[path for path, was_taken in paths.items() if was_taken][:1]])

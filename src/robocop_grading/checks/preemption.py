@@ -4,17 +4,7 @@ from dataclasses import replace
 from typing import Optional
 
 from ..handout import Limits
-from ..record import (
-    PREEMPTED,
-    RECALLED,
-    SUCCEEDED,
-    Record,
-    SentGoal,
-    feedback_of,
-    results_of,
-    samples_between,
-    status_name,
-)
+from ..record import PREEMPTED, RECALLED, SUCCEEDED, Record, SentGoal, status_name
 from ..texts import sentences
 from .endings import wrong_ending, wrong_success
 from .output import EXECUTE_RAISED, logged
@@ -56,7 +46,7 @@ def newer_goal(record: Record, limits: Limits) -> Verdict:
 def _preempted(
     record: Record, goal: SentGoal, requested: float, limits: Limits, request: str, hint: str
 ) -> Optional[Failed]:
-    results = results_of(record, goal)
+    results = record.results_of(goal)
     if not results or results[0].time > requested + limits.preempt_within:
         seen = f"a result {results[0].time - requested:.1f} s later" if results else "no result"
         wanted = f"PREEMPTED within {limits.preempt_within:g} s of the {request}"
@@ -71,20 +61,20 @@ def _preempted(
 
 def _unnoticed(record: Record, goal: SentGoal, requested: float, request: str, hint: str) -> str:
     """Why a goal did not end in time: its request was noticed late, only while the robot drove, or never."""
-    results = results_of(record, goal)
+    results = record.results_of(goal)
     if not results or results[0].status not in (PREEMPTED, RECALLED):
-        times = [feedback.time for feedback in feedback_of(record, goal)]
+        times = [feedback.time for feedback in record.feedback_of(goal)]
         if times and not results and times[-1] < requested + SILENT:
             return f"After the {request} {NOTHING_COMES}"
         return f"The {request} is not noticed: {hint}"
-    own = feedback_of(record, goal)
+    own = record.feedback_of(goal)
     if own and own[-1].time < requested + SILENT and _begins_other(record, goal, requested, results[0].time):
         return (
             f"The {request} is noticed at once, but the older goal's result comes "
             f"{results[0].time - requested:.1f} s later: set its terminal state as soon as it no longer runs"
         )
     late = f"The {request} is noticed only {results[0].time - requested:.1f} s later"
-    waiting = samples_between(record, requested, results[0].time - ENDS)
+    waiting = record.samples_between(requested, results[0].time - ENDS)
     turning = sum(abs(sample.w) > TURNING and abs(sample.v) < MOVING for sample in waiting)
     driving = sum(abs(sample.v) >= MOVING for sample in waiting)
     if turning > MOSTLY * len(waiting):
@@ -97,14 +87,14 @@ def _unnoticed(record: Record, goal: SentGoal, requested: float, request: str, h
 def _begins_other(record: Record, goal: SentGoal, requested: float, end: float) -> bool:
     """Return whether, soon after a request [s], the robot stands still or the server tells of another goal."""
     others = [it for it in record.feedback if it.id != goal.id and requested < it.time < requested + SILENT]
-    waiting = samples_between(record, requested + SILENT, end - ENDS)
+    waiting = record.samples_between(requested + SILENT, end - ENDS)
     return bool(others) or all(abs(it.v) < MOVING and abs(it.w) < TURNING for it in waiting)
 
 
 @check("states")
 def next_goal(record: Record, limits: Limits) -> Verdict:
     """After a goal has ended, in any state, the next one is served."""
-    if len(record.goals) < 2 or not results_of(record, record.goals[-2]):
+    if len(record.goals) < 2 or not record.results_of(record.goals[-2]):
         return NotReached("the first goal did not end")
     goal = record.goals[-1]
     answered = {status.id for status in record.statuses} | {result.id for result in record.results}
@@ -116,6 +106,6 @@ def next_goal(record: Record, limits: Limits) -> Verdict:
         return PASSED
     if logged(record, EXECUTE_RAISED, problem.time, goal.time) or problem.kind is Kind.NOT_RESET:
         return problem
-    before = status_name(results_of(record, record.goals[-2])[0].status)
+    before = status_name(record.results_of(record.goals[-2])[0].status)
     hint = f"The next goal fails after the one before it ended as {before}: is all state that a goal changes reset?"
     return replace(problem, cause=sentences(problem.cause, hint))

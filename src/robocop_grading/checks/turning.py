@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Iterator, List, NamedTuple, Optional, Sequence
 
 from ..handout import HEADING_TOLERANCE, Limits
-from ..record import Command, Record, SentGoal, active_until, errors_at, samples_between
+from ..record import Command, Record, SentGoal
 from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
@@ -39,12 +39,12 @@ def _in_force(record: Record) -> Iterator[Command]:
 
 def _situations(record: Record, goal: SentGoal, low: float, high: float) -> List[Situation]:
     """Commands sent far from the goal, after |angle error| was within [low, high] for a WINDOW."""
-    end = active_until(record, goal) - 1e-6
+    end = record.active_until(goal) - 1e-6
     situations = []
     for command in _in_force(record):
         if not goal.time + WINDOW < command.time < end:
             continue
-        errors = [errors_at(sample, goal) for sample in samples_between(record, command.time - WINDOW, command.time)]
+        errors = [goal.errors_at(sample) for sample in record.samples_between(command.time - WINDOW, command.time)]
         if len(errors) >= 4 and all(low <= abs(angle) <= high and distance > NEAR for distance, angle in errors):
             situations.append(Situation(command, errors[-1][1]))
     return situations
@@ -84,7 +84,7 @@ def _moves_first(record: Record, goal: SentGoal, situations: Sequence[Situation]
 
 def _aligned_before(record: Record, goal: SentGoal, limits: Limits) -> float:
     """The first time [s] at which the robot faced the goal; infinity if it never did."""
-    errors = ((sample.time, errors_at(sample, goal)[1]) for sample in samples_between(record, goal.time, math.inf))
+    errors = ((sample.time, goal.errors_at(sample)[1]) for sample in record.samples_between(goal.time, math.inf))
     return next((time for time, angle in errors if abs(angle) < limits.turn_beyond), math.inf)
 
 
@@ -127,11 +127,11 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
 
 def _never_turned(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """Name the failure of a robot that did not face the goal and got no command to turn."""
-    end = active_until(record, goal)
-    start = samples_between(record, goal.time, goal.time)
+    end = record.active_until(goal)
+    start = record.samples_between(goal.time, goal.time)
     if not start or end - goal.time < 1.0:
         return None
-    distance, angle = errors_at(start[-1], goal)
+    distance, angle = goal.errors_at(start[-1])
     commands = [command for command in record.commands if goal.time <= command.time <= end]
     if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
         reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"

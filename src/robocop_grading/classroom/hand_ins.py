@@ -8,7 +8,7 @@ from aro_robocop_goto_as.errors import RobocopError
 
 from ..errors import GradingSetupError, SubmissionError
 from ..files import unpacking
-from ..files.archives import is_archive
+from ..files.archives import Unpacked, is_archive
 from ..files.exports import EXPECTED, METADATA, visible
 
 
@@ -32,7 +32,7 @@ def collect(folder: Path, reserved: Collection[str] = ()) -> Tuple[Dict[str, str
     return hand_ins, others
 
 
-def unpacked(path: Path) -> unpacking.Unpacked:
+def unpacked(path: Path) -> Unpacked:
     """The files of a hand-in; SubmissionError if the hand-in can't be graded, or read."""
     is_file = path.is_file() and (path.suffix.lower() == ".py" or is_archive(path.name))
     if path.is_symlink() or not (path.is_dir() or is_file):

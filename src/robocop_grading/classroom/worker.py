@@ -30,7 +30,7 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
     """Grade one hand-in; its mistakes go into its report, and an error that is not its fault is raised."""
     started, (state, share) = time.monotonic(), places()
     sandbox = open_sandbox(unsafe, [state / "venv", state / "compat"])
-    digest = ""
+    digest, name = "", path.name.encode("utf-8", "replace").decode()
     notes: List[str] = []  # about what is not used of it
     with temporary_folder("robocop-class-") as top:
         report = top / "report"
@@ -39,7 +39,7 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
             digest, notes = handed_in.digest, handed_in.notes
             handed_in.write(top / "hand_in" / path.name)
             submission = prepare_submission(str(top / "hand_in" / path.name), share, state, top / "workshop", sandbox)
-            submission = replace(submission, name=shown(path), notes=[*submission.notes, *notes])
+            submission = replace(submission, name=name, notes=[*submission.notes, *notes])
             grade(Runner(plan, state, sandbox), submission, report, results.folder / path.name)
         except UngradableError:
             raise
@@ -50,10 +50,5 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
             if not isinstance(error, RobocopError):
                 problem, tracebacks = f"could not be graded, see {faults.FILE}: {error!r}", (traceback.format_exc(),)
             problem = shortened(problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", ""), MAX_PROBLEM)
-            write(Grade(shown(path), (), (problem,), tuple(notes), tracebacks=tracebacks), plan, {}, report)
+            write(Grade(name, (), (problem,), tuple(notes), tracebacks=tracebacks), plan, {}, report)
         results.keep(path.name, digest, report, time.monotonic() - started)
-
-
-def shown(path: Path) -> str:
-    """Its name as text."""
-    return path.name.encode("utf-8", "replace").decode()

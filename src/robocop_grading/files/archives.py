@@ -6,13 +6,14 @@ tarfile.extractall() came with 3.12, and 3.14 changed the default one.
 
 import bz2
 import gzip
+import hashlib
 import io
 import lzma
 import os
 import stat
 import tarfile
 import zipfile
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import IO, Any, Callable, Dict, List, NamedTuple
 
 from robocop_hosting import tree
@@ -31,6 +32,7 @@ LEFT_OUT = {*tree.GENERATED, ".git", ".robocop", ".ipynb_checkpoints", ".DS_Stor
 UNGRADED = frozenset(  # videos, recordings and images
     ".avi .bag .bmp .gif .heic .jpeg .jpg .m4v .mkv .mov .mp4 .mpeg .mpg .ogv .pdf .png .tif .tiff .webm .wmv".split()
 )
+NOT_GRADED = "was left out: a video, a recording or an image is not graded"
 APPLE_DOUBLE = "._"  # beginning of the files in which macOS keeps attributes of others
 SUFFIXES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
 # By a file's first bytes.
@@ -48,38 +50,61 @@ class Entry(NamedTuple):
     target: str = ""  # of a link
 
 
-class Entries:
-    """What a hand-in contains, by path, with slashes; SubmissionError if there is too much."""
+class Unpacked:
+    """What was handed in, a file or a folder, in memory; SubmissionError if there is too much."""
 
     def __init__(self) -> None:
-        self.by_path: Dict[str, Entry] = {}
+        self.entries: Dict[str, Entry] = {}  # by path, with slashes; the file or folder itself has an empty one
         self._used = {False: 0, True: 0}  # bytes, also of archives
-        self.left_out: List[str] = []  # files that are not graded and would take much room, each with its size
+        self.notes: List[str] = []  # about what is not used
 
     def add(self, path: str, entry: Entry) -> None:
         """Add an entry, or replace the one of that name."""
-        self.by_path[path] = entry
-        if len(self.by_path) > MAX_ENTRIES:
+        self.entries[path] = entry
+        if len(self.entries) > MAX_ENTRIES:
             raise SubmissionError(TOO_MANY)
 
     def add_file(self, path: str, mode: int, source: "IO[bytes]", size: int) -> None:
         """Add a file, if there is room for it; `size`: its bytes, as it says itself."""
         with source:
             if is_ungraded(path, size):
-                self.left_out.append(f"{path} ({size // MB} MB)")
+                self.notes.append(f"{path} ({size // MB} MB) {NOT_GRADED}")
                 return
             packed = is_archive(path)
             limit = MAX_PACKED if packed else MAX_BYTES
             room = limit - self._used[packed]
             content = source.read(room + 1)
         if len(content) > room:
-            sizes = [(len(entry.content), it) for it, entry in self.by_path.items()]
+            sizes = [(len(entry.content), it) for it, entry in self.entries.items()]
             most, largest = max([*sizes, (max(size, len(content)), path)])
             raise SubmissionError(
                 f"larger than {limit // MB} MB; the largest file in it is {largest} with {most / MB:.1f} MB"
             )
         self._used[packed] += len(content)
         self.add(path, Entry(mode, content))
+
+    @property
+    def digest(self) -> str:
+        """A text that changes with the content."""
+        sums = hashlib.sha256()
+        for path, (mode, content, target) in sorted(self.entries.items()):
+            sums.update(repr((path, mode, hashlib.sha256(content).digest(), target)).encode("utf-8", "replace"))
+        return sums.hexdigest()
+
+    def write(self, top: Path) -> None:
+        """Write it to `top`, which does not exist yet; SubmissionError if that is not possible."""
+        try:
+            for path, (mode, content, target) in sorted(self.entries.items()):
+                place = top / path if path else top
+                folder = place if stat.S_ISDIR(mode) else place.parent
+                folder.mkdir(parents=True, exist_ok=True)
+                if stat.S_ISLNK(mode):
+                    place.symlink_to(target)
+                elif stat.S_ISREG(mode):
+                    place.write_bytes(content)
+                    place.chmod(stat.S_IMODE(mode))
+        except (OSError, ValueError) as error:  # for example a name that is too long, or a link to one with a zero byte
+            raise SubmissionError(f"can't be unpacked: {error}") from error
 
 
 def is_ungraded(name: str, size: int) -> bool:
@@ -97,17 +122,17 @@ def is_left_out(path: PurePosixPath) -> bool:
     return bool(LEFT_OUT.intersection(path.parts)) or path.name.startswith(APPLE_DOUBLE)
 
 
-def unpack_archive(file: "IO[bytes]", entries: Entries, prefix: str = "") -> None:
+def unpack_archive(file: "IO[bytes]", found: Unpacked, prefix: str = "") -> None:
     """Add the files and links of a zip or tar archive, each below `prefix`; SubmissionError if that is not possible."""
     try:
-        (_unpack_zip if _is_zip(file) else _unpack_tar)(file, entries, prefix)
+        (_unpack_zip if _is_zip(file) else _unpack_tar)(file, found, prefix)
     except SubmissionError:
         raise
     except Exception as error:  # zipfile and tarfile document no list of exceptions for malformed files
         raise SubmissionError(f"can't be unpacked: {error or type(error).__name__}") from error
-    for path in entries.by_path:
+    for path in found.entries:
         for folder in map(str, PurePosixPath(path).parents):  # what is below a link would be written elsewhere
-            if folder in entries.by_path and not stat.S_ISDIR(entries.by_path[folder].mode):
+            if folder in found.entries and not stat.S_ISDIR(found.entries[folder].mode):
                 raise SubmissionError(f"{path}: {folder} is a file or a link, too")
 
 
@@ -117,7 +142,7 @@ def _is_zip(file: "IO[bytes]") -> bool:
     return file.read(2) == b"PK" and zipfile.is_zipfile(file)
 
 
-def _unpack_zip(file: "IO[bytes]", entries: Entries, prefix: str) -> None:
+def _unpack_zip(file: "IO[bytes]", found: Unpacked, prefix: str) -> None:
     end = zipfile._EndRecData(file)  # type: ignore[attr-defined]  # private: nothing public reads only this
     if end and end[DIRECTORY_SIZE] > MAX_DIRECTORY:
         raise SubmissionError(TOO_MANY)
@@ -129,9 +154,9 @@ def _unpack_zip(file: "IO[bytes]", entries: Entries, prefix: str) -> None:
                 continue
             path, source = _path(name, prefix), archive.open(info)
             if stat.S_ISLNK(mode):
-                entries.add(path, Entry(LINK, target=os.fsdecode(source.read(MAX_TARGET))))
+                found.add(path, Entry(LINK, target=os.fsdecode(source.read(MAX_TARGET))))
             else:
-                entries.add_file(path, _file_mode(mode), source, info.file_size)
+                found.add_file(path, _file_mode(mode), source, info.file_size)
 
 
 def _name_in_zip(info: zipfile.ZipInfo) -> str:
@@ -147,7 +172,7 @@ def _name_in_zip(info: zipfile.ZipInfo) -> str:
         return info.filename
 
 
-def _unpack_tar(file: "IO[bytes]", entries: Entries, prefix: str) -> None:
+def _unpack_tar(file: "IO[bytes]", found: Unpacked, prefix: str) -> None:
     file.seek(0)
     begin = file.read(max(map(len, COMPRESSIONS)))
     file.seek(0)
@@ -167,7 +192,7 @@ def _unpack_tar(file: "IO[bytes]", entries: Entries, prefix: str) -> None:
             continue
         path = _path(member.name, prefix)
         if member.issym():
-            entries.add(path, Entry(LINK, target=member.linkname))
+            found.add(path, Entry(LINK, target=member.linkname))
             continue
         try:
             source = archive.extractfile(member)  # of a hard link: the file's that it is another name of
@@ -175,7 +200,7 @@ def _unpack_tar(file: "IO[bytes]", entries: Entries, prefix: str) -> None:
             raise SubmissionError(f"{member.name}: a hard link to {member.linkname}, which is not in it") from None
         if source is None:
             raise SubmissionError(f"{member.name}: expected a file, folder or link")
-        entries.add_file(path, _file_mode(member.mode), source, member.size)
+        found.add_file(path, _file_mode(member.mode), source, member.size)
 
 
 def _file_mode(mode: int) -> int:

@@ -1,17 +1,16 @@
 """Unpacks what was handed in, on disk or in archives, one inside another, as the platforms of courses export it."""
 
-import hashlib
 import io
 import os
 import re
 import stat
 from pathlib import Path, PurePosixPath
-from typing import Dict, List, NamedTuple
+from typing import Dict, List
 
 from robocop_hosting import tree
 
 from ..errors import SubmissionError
-from .archives import FOLDER, LEFT_OUT, Entries, Entry, is_archive, is_left_out, unpack_archive
+from .archives import FOLDER, LEFT_OUT, Entry, Unpacked, is_archive, is_left_out, unpack_archive
 
 MAX_NESTED = 3  # archives, one inside another, in what was handed in
 MAX_NAMED = 10  # files in a message
@@ -21,53 +20,23 @@ OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
 TYPES = (stat.S_IFREG, stat.S_IFDIR, stat.S_IFLNK)
 
 
-class Unpacked(NamedTuple):
-    """What was handed in, a file or a folder, in memory."""
-
-    entries: Dict[str, Entry]  # by path; the file or folder itself has an empty one
-    notes: List[str]  # about what is not used
-
-    @property
-    def digest(self) -> str:
-        """A text that changes with the content."""
-        sums = hashlib.sha256()
-        for path, (mode, content, target) in sorted(self.entries.items()):
-            sums.update(repr((path, mode, hashlib.sha256(content).digest(), target)).encode("utf-8", "replace"))
-        return sums.hexdigest()
-
-    def write(self, top: Path) -> None:
-        """Write it to `top`, which does not exist yet; SubmissionError if that is not possible."""
-        try:
-            for path, (mode, content, target) in sorted(self.entries.items()):
-                place = top / path if path else top
-                folder = place if stat.S_ISDIR(mode) else place.parent
-                folder.mkdir(parents=True, exist_ok=True)
-                if stat.S_ISLNK(mode):
-                    place.symlink_to(target)
-                elif stat.S_ISREG(mode):
-                    place.write_bytes(content)
-                    place.chmod(stat.S_IMODE(mode))
-        except (OSError, ValueError) as error:  # for example a name that is too long, or a link to one with a zero byte
-            raise SubmissionError(f"can't be unpacked: {error}") from error
-
-
 def unpack(path: Path) -> Unpacked:
     """Unpack a file, archive or folder; SubmissionError if it can't be read, or has nothing to grade."""
-    entries = Entries()
+    found = Unpacked()
     try:
         if is_archive(path.name) and path.is_file():
-            entries.add("", Entry(FOLDER))
+            found.add("", Entry(FOLDER))
             with open(path, "rb") as file:
-                unpack_archive(file, entries)
+                unpack_archive(file, found)
         else:
-            _add_from_disk(path, entries)
+            _add_from_disk(path, found)
         if path.is_dir() and not os.listdir(path):
             raise SubmissionError("the folder is empty")
     except OSError as error:
         raise SubmissionError(f"can't be read: {error}") from error
-    _unpack_nested(entries)
-    notes = [f"{it} was left out: a video, a recording or an image is not graded" for it in entries.left_out]
-    return Unpacked(entries.by_path, [*_notes(entries.by_path), *notes])
+    _unpack_nested(found)
+    found.notes = [*_notes(found.entries), *found.notes]
+    return found
 
 
 def is_packed(path: Path) -> bool:
@@ -78,7 +47,7 @@ def is_packed(path: Path) -> bool:
     return any(map(is_archive, names)) and not any(map(GRADED.fullmatch, names))
 
 
-def _add_from_disk(path: Path, entries: Entries) -> None:
+def _add_from_disk(path: Path, found: Unpacked) -> None:
     """A file or folder and everything below it; links are not followed."""
     below = (folder / name for folder, folders, files in tree.walk(path, LEFT_OUT) for name in [*folders, *files])
     for inner in (path, *below):
@@ -89,20 +58,20 @@ def _add_from_disk(path: Path, entries: Entries) -> None:
         if is_left_out(PurePosixPath(name)):
             continue
         if stat.S_ISREG(mode):
-            entries.add_file(name, mode, open(inner, "rb"), status.st_size)
+            found.add_file(name, mode, open(inner, "rb"), status.st_size)
         else:
-            entries.add(name, Entry(mode, target=os.readlink(inner) if stat.S_ISLNK(mode) else ""))
+            found.add(name, Entry(mode, target=os.readlink(inner) if stat.S_ISLNK(mode) else ""))
 
 
-def _unpack_nested(entries: Entries) -> None:
+def _unpack_nested(found: Unpacked) -> None:
     """Replace archives by folders with their names, until there is something to grade outside of archives."""
     for _ in range(MAX_NESTED):
-        archives = [path for path in _files(entries.by_path) if is_archive(path)]
-        if _has_something_to_grade(entries.by_path):
+        archives = [path for path in _files(found.entries) if is_archive(path)]
+        if _has_something_to_grade(found.entries):
             return
         for path in archives:
             try:
-                unpack_archive(io.BytesIO(entries.by_path.pop(path).content), entries, path)
+                unpack_archive(io.BytesIO(found.entries.pop(path).content), found, path)
             except SubmissionError as error:
                 raise SubmissionError(f"{path}: {error}") from error
 

@@ -13,7 +13,7 @@ from matplotlib.patches import Circle, Polygon
 from matplotlib.ticker import MultipleLocator
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE, STOP_DISTANCE
-from ..record import TERMINAL, Record, Sample, SentGoal, active_until, errors_at, status_name
+from ..record import TERMINAL, Record, Sample, SentGoal, status_name
 
 BLUE, ORANGE, GREEN, RED, GREY = "#1f6fb4", "#d9730d", "#2c8a3d", "#c62828", "#777777"
 STATE_COLOURS = {"ACTIVE": BLUE, "SUCCEEDED": GREEN, "ABORTED": RED, "PREEMPTED": ORANGE}
@@ -167,14 +167,14 @@ def _on_way(record: Record) -> List[Tuple[Sample, SentGoal]]:
     """Samples with the goal that was active."""
     pairs = []
     for goal, newer in zip(record.goals, [*record.goals[1:], None]):
-        end = min(active_until(record, goal), newer.time if newer else math.inf)
+        end = min(record.active_until(goal), newer.time if newer else math.inf)
         pairs += [(sample, goal) for sample in record.samples if goal.time <= sample.time <= end]
     return pairs
 
 
 def _errors(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
     """Both errors: ground truth and feedback."""
-    pairs = [(s.time, errors_at(s, g)) for s, g in _on_way(record)]
+    pairs = [(s.time, g.errors_at(s)) for s, g in _on_way(record)]
     told = [(message.time, (message.position_error, message.angle_error)) for message in record.feedback]
     for index, (title, levels) in enumerate(
         (("position error [m]", [GOAL_RADIUS]), ("angle error [rad]", [HEADING_TOLERANCE, -HEADING_TOLERANCE]))
@@ -190,7 +190,7 @@ def _errors(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> No
 def _distances(all_axes: Sequence[Axes], record: Record, at: Sequence[float]) -> None:
     """The distances to the goal and to the nearest obstacle ahead."""
     curves = [
-        ("to the goal", BLUE, [(s.time, errors_at(s, g)[0]) for s, g in _on_way(record)]),
+        ("to the goal", BLUE, [(s.time, g.errors_at(s)[0]) for s, g in _on_way(record)]),
         ("to the nearest obstacle ahead", RED, [(s.time, s.ahead) for s in record.samples]),
     ]
     over_time(all_axes[0], "distance [m]", curves, [STOP_DISTANCE, GOAL_RADIUS], 4.0)

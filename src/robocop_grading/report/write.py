@@ -5,8 +5,9 @@ import json
 import os
 import shlex
 import tempfile
+from functools import partial
 from pathlib import Path
-from typing import Any, Dict, Iterator, Optional, Sequence
+from typing import Any, Callable, Dict, Iterator, Optional, Sequence
 from urllib.parse import quote
 
 import jinja2
@@ -50,13 +51,13 @@ def write(grade: Grade, plan: Plan, records: Records, folder: Path, place: Optio
     # An HTML block without empty lines, so that GitHub does not read texts of the submission as Markdown.
     summary = render("summary.html", grade=grade, marks=MARKS)
     (folder / "summary.md").write_text(summary, encoding="utf-8", errors="replace")
-    replays = _Replays(folder, (place or folder).resolve())
+    replay = partial(_replay, folder, (place or folder).resolve())
     page = render(
         "report.html",
         grade=grade,
         seed=plan.seed,
-        mistakes=[_mistake(it, records, replays) for it in grade.mistakes],
-        scenarios=list(_scenarios(grade, plan, records, replays)),
+        mistakes=[_mistake(it, records, replay) for it in grade.mistakes],
+        scenarios=list(_scenarios(grade, plan, records, replay)),
     )
     (folder / "report.html").write_text(page, encoding="utf-8", errors="replace")
 
@@ -130,23 +131,16 @@ def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
 # -- report.html --
 
 
-@dataclasses.dataclass(frozen=True)
-class _Replays:
-    """The commands that play the bags of a report; `place`: where the report's folder will be."""
-
-    folder: Path
-    place: Path
-
-    def of(self, part: str, record: Record, start: float = 0.0) -> str:
-        """The command for a scenario, from a time [s] on; nothing if there is no bag, or nothing happens in it."""
-        bag = f"{part}-{record.name}.bag"
-        if not (self.folder / bag).is_file() or not _has_something_to_see(record):
-            return ""
-        command = f"{shlex.quote(str(ROOT / 'robocop'))} replay {shlex.quote(str(self.place / bag))}"
-        return f"{command} --start {start:.1f}" if start else command
+def _replay(folder: Path, place: Path, part: str, record: Record, start: float = 0.0) -> str:
+    """The command that plays a scenario's bag from a time [s] on; nothing if there is no bag, or nothing happens."""
+    bag = f"{part}-{record.name}.bag"
+    if not (folder / bag).is_file() or not _has_something_to_see(record):
+        return ""
+    command = f"{shlex.quote(str(ROOT / 'robocop'))} replay {shlex.quote(str(place / bag))}"
+    return f"{command} --start {start:.1f}" if start else command
 
 
-def _mistake(mistake: Mistake, records: Records, replays: _Replays) -> Dict[str, Any]:
+def _mistake(mistake: Mistake, records: Records, replay: Callable[..., str]) -> Dict[str, Any]:
     """The values of a mistake's section: its picture, with the moment marked, and the command that shows it."""
     check, failure = mistake.check, mistake.check.failure
     record = records.get(check.part, {}).get(check.scenario)
@@ -154,12 +148,12 @@ def _mistake(mistake: Mistake, records: Records, replays: _Replays) -> Dict[str,
     if record is None or failure is None:
         return values
     begin = max(0.0, failure.time - record.samples[0].time - LEAD) if record.samples else 0.0
-    picture, replay = _plot(CHECKS[check.name].plot, record, [failure.time]), replays.of(check.part, record, begin)
+    picture, command = _plot(CHECKS[check.name].plot, record, [failure.time]), replay(check.part, record, begin)
     problem = "" if record.problem.lower() in mistake.sentence.lower() else record.problem
-    return {**values, "svg": picture, "replay": replay, "problem": problem}
+    return {**values, "svg": picture, "replay": command, "problem": problem}
 
 
-def _scenarios(grade: Grade, plan: Plan, records: Records, replays: _Replays) -> Iterator[Dict[str, Any]]:
+def _scenarios(grade: Grade, plan: Plan, records: Records, replay: Callable[..., str]) -> Iterator[Dict[str, Any]]:
     """The values of each scenario's section."""
     about = {scenario.name: scenario.about for scenario in plan.scenarios}
     order = [START, *about, *BRIDGE_SCENARIOS]
@@ -171,7 +165,7 @@ def _scenarios(grade: Grade, plan: Plan, records: Records, replays: _Replays) ->
                 "record": record,
                 "about": about.get(record.name, ""),
                 "failed": [check.name for check in checks if check.outcome is CheckOutcome.FAILED],
-                "replay": replays.of(part, record),
+                "replay": replay(part, record),
                 "plots": [svg for svg in (_plot(plot, record, []) for plot in SCENARIO_PLOTS[part]) if svg],
                 "lines": record.lines[:MAX_LINES],
             }

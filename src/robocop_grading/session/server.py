@@ -119,19 +119,19 @@ class ServerRun(Run):
     def _unclean(self, record: Record) -> bool:
         """Return whether the node has to be restarted, so that its state does not affect the next scenario."""
         text = "\n".join(line.text for line in record.lines)
-        ended = all(len(rec.results_of(record, goal)) == 1 for goal in record.goals)
+        ended = all(len(record.results_of(goal)) == 1 for goal in record.goals)
         return bool(record.deaths) or not ended or self._unexpected(record) or "Traceback" in text or "[ERROR]" in text
 
     def _unexpected(self, record: Record) -> bool:
         """Return whether a goal ended in another state than it should: openly by an abort, elsewhere by a success."""
         for goal in record.goals:
-            for result in rec.results_of(record, goal)[:1]:
-                at_end = rec.samples_between(record, result.time - AT_END, result.time)
+            for result in record.results_of(goal)[:1]:
+                at_end = record.samples_between(result.time - AT_END, result.time)
                 far = result.status == rec.ABORTED and all(
                     sample.ahead > self.limits.abort_farthest for sample in at_end
                 )
                 elsewhere = result.status == rec.SUCCEEDED and all(
-                    rec.errors_at(sample, goal)[0] > self.limits.reached for sample in at_end
+                    goal.errors_at(sample)[0] > self.limits.reached for sample in at_end
                 )
                 if far or elsewhere or rec.status_name(result.status) != goal.ends:
                     return True
@@ -199,7 +199,7 @@ class ServerRun(Run):
             running = [it for it in self.parts["goals"] if it.id not in self.ended] or [goal]
             progress = progress if len(progress) <= len(running) else {}
             for it in running:
-                errors = Errors(*rec.errors_at(self.stage.odom_from_footprint(), it))
+                errors = Errors(*it.errors_at(self.stage.odom_from_footprint()))
                 least = self.limits.stall_distance, self.limits.stall_angle
                 progress[it.id] = track_progress(progress.get(it.id), errors, now, *least)
             if all(now - it.since > self.limits.stall for it in progress.values()):

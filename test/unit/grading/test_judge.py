@@ -108,7 +108,7 @@ def test_cause_of_wrong_feedback_fits_in_all_scenarios() -> None:
 def test_pose_that_never_changes_is_explained_by_the_topic_that_nobody_publishes() -> None:
     unturned = []
     for name, goal in (("left", GOAL), ("right", replace(GOAL, x=-1.0))):
-        errors = [rec.errors_at(replace(at, yaw=0.0), goal) for at in RIGHT.samples]
+        errors = [goal.errors_at(replace(at, yaw=0.0)) for at in RIGHT.samples]
         told = [replace(it, position_error=d, angle_error=a) for it, (d, a) in zip(RIGHT.feedback, errors)]
         unturned.append(changed(name=name, goals=(goal,), feedback=tuple(told)))
     assert "as if the heading stayed 0" in cause_of("feedback_angle", *unturned)

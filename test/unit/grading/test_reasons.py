@@ -11,7 +11,7 @@ from robocop_grading.checks import CHECKS, Failed
 from robocop_grading.checks.consequences import FOLLOWS
 from robocop_grading.checks.verdict import Kind
 from robocop_grading.faults import Faults
-from robocop_grading.reasons import Reasons, first_reasons
+from robocop_grading.reasons import first_reasons, reasons_of
 
 SERVER = [check.name for check in PLAN.checks if check.part == "server"]
 
@@ -66,5 +66,5 @@ def test_whatever_subset_of_the_tables_rows_applies_each_failure_begins_with_som
 def test_whatever_kinds_of_failures_there_are_each_begins_with_some_check(kinds: Dict[str, Kind]) -> None:
     goal = RIGHT.goals[0]
     failures = {name: Failed("", "", 3.0, name, kinds[name], goal) for name in SERVER if name in kinds}
-    table = Reasons(failures, dict.fromkeys(failures, RIGHT), Faults())
-    assert begins_with_itself({name: table.of(name) for name in failures})
+    where = dict.fromkeys(failures, RIGHT)
+    assert begins_with_itself({name: reasons_of(name, failures, where, Faults()) for name in failures})

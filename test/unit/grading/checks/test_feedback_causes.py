@@ -9,7 +9,7 @@ from grading_records import GOAL, PLAN, RIGHT
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from robocop_grading.judge import CheckResult, judge
-from robocop_grading.record import Feedback, Sample, SentGoal, errors_at
+from robocop_grading.record import Feedback, Sample, SentGoal
 
 MIRRORED = tuple(
     replace(at, y=-at.y, yaw=-at.yaw, world_y=-15.0 - at.world_y, world_yaw=at.world_yaw - 2.0 * at.yaw)
@@ -30,7 +30,7 @@ class Seen:
         self.at, self.goal, self.yaw = at, goal, at.yaw
         self.dx, self.dy = goal.x - at.x, goal.y - at.y
         self.direction = math.atan2(self.dy, self.dx)
-        self.distance, self.angle = errors_at(at, goal)
+        self.distance, self.angle = goal.errors_at(at)
 
 
 def wrap(angle: float) -> float:
@@ -132,7 +132,7 @@ def test_pose_counted_from_the_start_of_the_node_is_named() -> None:
     def feedback(samples: Tuple[Sample, ...], goal: SentGoal) -> List[Feedback]:
         first = started if samples is RIGHT.samples and goal.x == 1.0 else Pose2D()
         poses = [compose(inverse(first), Pose2D(at.x, at.y, at.yaw)) for at in samples]
-        errors = [errors_at(pose, goal) for pose in poses]
+        errors = [goal.errors_at(pose) for pose in poses]
         return [replace(it, position_error=d, angle_error=a) for it, (d, a) in zip(RIGHT.feedback, errors)]
 
     checks = judged(feedback, started=started)

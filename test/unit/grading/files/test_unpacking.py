@@ -214,9 +214,10 @@ def test_large_video_beside_a_solution_is_left_out_and_named(pack, tmp_path):
 
 @pytest.mark.parametrize("target", ["", "b\0c"])
 def test_link_that_no_disk_can_hold_is_refused(target, tmp_path):
-    entries = {"": archives.Entry(archives.FOLDER), "a": archives.Entry(archives.LINK, target=target)}
+    found = archives.Unpacked()
+    found.entries = {"": archives.Entry(archives.FOLDER), "a": archives.Entry(archives.LINK, target=target)}
     with pytest.raises(SubmissionError, match="can't be unpacked"):
-        unpacking.Unpacked(entries, []).write(tmp_path / "eve")
+        found.write(tmp_path / "eve")
 
 
 def test_link_that_is_replaced_by_a_file_of_its_name_is_not_written_through(tmp_path, unpacked):
