@@ -135,7 +135,7 @@ def build_once(
     folder: Path, key: str, underlay: Environment, build_workspace: Callable[[], Environment]
 ) -> Environment:
     """The environment of the workspace at `folder`, which is built unless its last build had the same key."""
-    stamp = folder / "built-from"
+    stamp, key = folder / "built-from", f"{folder}: {key}"  # catkin writes absolute paths into what it builds
     with exclusive(folder):
         if stamp.is_file() and stamp.read_text() == key:
             return sourced(folder / "devel" / "setup.bash", underlay)

@@ -8,7 +8,7 @@ import time
 from typing import List, NoReturn, Sequence, Tuple
 
 from ..launch_arguments import TRUE, LaunchArguments, with_absolute_path
-from ..names import ACTION, ACTION_TYPE, PACKAGE, absolute
+from ..names import ACTION, ACTION_TYPE, PACKAGE, SIMULATOR, absolute
 from ..probes import master, settings, x_display
 from . import program
 from .program import REPLAY, RUN, SIM, refuse, say
@@ -47,7 +47,7 @@ def refuse_second_simulator() -> None:
     uri = master.master_uri()
     simulator = None if program.is_dry_run() else master.running_simulator(uri)
     if simulator:
-        how = "with Ctrl-C in its terminal or with ./robocop shell rosnode kill --all"
+        how = f"with Ctrl-C in its terminal or with ./robocop shell rosnode kill {absolute('', SIMULATOR)}"
         refuse(f"{simulator} on {uri}; stop it {how}, or use another ROS_MASTER_URI")
 
 

@@ -5,7 +5,7 @@ from statistics import mean, median
 from typing import Callable, List, Sequence, Set, Tuple
 
 from ..record import ERRORS, wrapped
-from .feedback_hypotheses import ANGLE, CAUSES, FROM_ORIGIN, POSITION, SENTENCES, UNCHANGED, Pair
+from .feedback_hypotheses import ANGLE, CAUSES, FROM_ORIGIN, IN_DEGREES, POSITION, SENTENCES, UNCHANGED, Pair
 
 TOLERANCES = (0.06, 0.12)  # [m], [rad] within which a value fits a hypothesis: the default tolerances of the checks
 MAX_WRONG = 0.1  # share of a scenario's values that may not fit: single ones when a turn ends
@@ -18,6 +18,9 @@ SCALED = 0.2  # [m], [rad] smaller true errors are not used to estimate a factor
 MAX_SPREAD = 0.1  # of such a factor
 OFFSET = 0.05  # [m], [rad] a smaller constant difference counts as no difference
 UNITS = ("m", "rad")
+TURNED = 0.005  # [rad] from one message to the next; in degrees, this is more than the tolerance
+ENOUGH = 10  # fewer messages while the robot turns show nothing
+AGES = range(4)  # [samples] of the pose that a message is based on
 MAX_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less than half of it
 
 
@@ -47,6 +50,8 @@ def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence
     names = _fitting(index, wrong, thinned, scale)
     if UNCHANGED.intersection(names) - {"pose_of_start"}:  # a special case of it
         names = [name for name in names if name != "pose_of_start"]
+    if not names and index == ANGLE and any(_heading_is_in_degrees(scenarios, age) for age in AGES):
+        names = [IN_DEGREES]
     return "; or: ".join(map(SENTENCES.__getitem__, names)) or _measured(index, thinned), set(names)
 
 
@@ -65,6 +70,24 @@ def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pai
         if max(rows) < MAX_WRONG_TIME and all(_fits(it, index) for it in missed):
             found.append((_mean(missed), cause))
     return list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < MAX_MEAN))
+
+
+def _heading_is_in_degrees(scenarios: Sequence[Sequence[Pair]], age: int) -> bool:
+    """Return whether angle_error changes as with a heading in degrees while the robot turns.
+
+    Its values say less: the heading in /odom drifts by some milliradians, which are 0.5 in degrees. `age` [samples]: of
+    the pose that a message is based on.
+    """
+    misses = []
+    for pairs in scenarios:
+        based = [(pair, pair.samples[-1 - age]) for pair in pairs if len(pair.samples) > age]
+        for (earlier, before), (pair, now) in zip(based, based[1:]):
+            turned = wrapped(now.yaw - before.yaw)
+            if pair.goal == earlier.goal and abs(turned) > TURNED:
+                true = pair.goal.errors_at(now)[ANGLE] - pair.goal.errors_at(before)[ANGLE]
+                told = pair.feedback.angle_error - earlier.feedback.angle_error
+                misses.append(abs(wrapped(told - (true + turned - math.degrees(turned)))))
+    return len(misses) >= ENOUGH and _fits(misses, ANGLE)
 
 
 def _measured(index: int, scenarios: Sequence[Sequence[Pair]]) -> str:

@@ -10,6 +10,7 @@ from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from ..record import Feedback, Sample, SentGoal, wrapped
 
 POSITION, ANGLE = range(2)  # indices of ERRORS
+IN_DEGREES = "heading_in_degrees"
 UNSURE = 0.3  # [m] nearer to where the goal is taken to be, an inexact position turns its direction too much
 
 
@@ -60,7 +61,7 @@ SENTENCES = {  # of causes, by their names
         "position_error is only the part of the way that is along the robot's heading: it is the whole distance, "
         "hypot(dx, dy)"
     ),
-    "heading_in_degrees": "The heading is in degrees, and is subtracted from an angle in radians",
+    IN_DEGREES: "The heading is in degrees, and is subtracted from an angle in radians",
     "goal_swapped": "The goal's x and y are swapped",
     "goal_x_missing": "The goal's x is taken as 0",
     "goal_y_missing": "The goal's y is taken as 0",
@@ -181,7 +182,6 @@ CAUSES: Tuple[Sequence[Hypothesis], ...] = (
         ("angle_sign", lambda p: -p.truth[ANGLE]),
         ("angle_without_heading", lambda p: p.direction),
         ("heading_without_sign", lambda p: p.direction - abs(p.now.yaw)),
-        ("heading_in_degrees", lambda p: p.direction - math.degrees(wrapped(p.now.yaw))),
         ("heading_added", lambda p: p.direction + p.now.yaw),
         ("atan2_swapped", lambda p: math.atan2(*p.way) - p.now.yaw),
         ("atan", lambda p: math.atan(p.way[1] / (p.way[0] or 1e-9)) - p.now.yaw),

@@ -1,14 +1,13 @@
 """The server's scenarios: goals sent to it on the action's topics, as by any client."""
 
 import math
-from typing import Dict, List
+from typing import List
 
 from actionlib_msgs.msg import GoalID
 from aro_robocop_goto_as.msg import GoToPositionActionGoal, GoToPositionGoal
 from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose
-from aro_robocop_goto_as.goto.rule import Errors, LastProgress, track_progress
 from aro_robocop_goto_as.ros import markers
 
 from .. import record as rec
@@ -17,6 +16,7 @@ from ..plan import AGAIN, START, Push, Scenario, Step
 from ..record import Record
 from ..sites import SITE
 from .job import Job
+from .progress import Progress
 from .run import TICK, Run
 from .scenario_bag import MARKERS
 from .stage import Stage
@@ -185,24 +185,15 @@ class ServerRun(Run):
         return ""
 
     def _until_end(self, goal: rec.SentGoal) -> str:
-        """Tick until the goal has ended; returns the problem, or an empty text.
-
-        Progress towards an older goal that has not ended counts as well. When one has ended, the time starts anew.
-        """
-        started = self.stage.now
-        progress: Dict[str, LastProgress] = {}  # by goal
+        """Tick until the goal has ended; returns the problem, or an empty text."""
+        started, progress = self.stage.now, Progress(self.limits)
         while goal.id not in self.ended:
             problem = self._tick()
             if problem:
                 return problem
             now = self.stage.now
-            running = [it for it in self.parts["goals"] if it.id not in self.ended] or [goal]
-            progress = progress if len(progress) <= len(running) else {}
-            for it in running:
-                errors = Errors(*it.errors_at(self.stage.odom_from_footprint()))
-                least = self.limits.stall_distance, self.limits.stall_angle
-                progress[it.id] = track_progress(progress.get(it.id), errors, now, *least)
-            if all(now - it.since > self.limits.stall for it in progress.values()):
+            running = [it for it in self.parts["goals"] if it.id not in self.ended]
+            if progress.missing_for(self.stage.odom_from_footprint(), running, now) > self.limits.stall:
                 return f"the robot made no progress for {self.limits.stall:g} s, and the goal did not end"
             if now - started > self.limits.goal_time:
                 return f"the goal did not end within {self.limits.goal_time:g} s"

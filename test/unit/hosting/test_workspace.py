@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from robocop_hosting.workspace import error_of
+from robocop_hosting.workspace import build_once, error_of
 
 WARNING = """-- catkin 0.8.10
 CMake Warning at /usr/share/genmsg/cmake/genmsg-extras.cmake:49 (message):
@@ -27,3 +27,19 @@ def test_log_of_a_failed_build_is_shown_from_the_first_error_with_paths_inside_t
 
 def test_log_of_a_failed_build_without_an_error_is_shown_by_its_end() -> None:
     assert error_of("line\n" * 100 + "last\n", Path("/build")).splitlines()[-2:] == ["line", "last"]
+
+
+def test_a_workspace_that_was_moved_is_built_again(tmp_path: Path) -> None:
+    built = []
+
+    def use(folder: Path) -> None:
+        build_once(folder, "checksums", {}, lambda: built.append(folder) or {})
+
+    here, there = tmp_path / "here", tmp_path / "there"
+    (here / "devel").mkdir(parents=True)
+    (here / "devel" / "setup.bash").touch()
+    use(here)
+    use(here)
+    here.rename(there)
+    use(there)
+    assert built == [here, there]

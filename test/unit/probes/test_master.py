@@ -7,6 +7,7 @@ from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 import pytest
 
+from aro_robocop_goto_as.cli.system_commands import refuse_second_simulator
 from aro_robocop_goto_as.errors import MasterError
 from aro_robocop_goto_as.probes import master
 
@@ -76,6 +77,13 @@ def test_simulator_runs_if_the_master_knows_one_that_answers_as_a_node():
         assert master.running_simulator(uri) is None
     with served(other=lambda: 1) as another_program, ros_master(another_program) as uri:
         assert master.running_simulator(uri) is None
+
+
+def test_a_second_simulator_is_refused_with_a_command_that_ends_only_the_first_one(monkeypatch):
+    with node() as simulator, ros_master(simulator) as uri:
+        monkeypatch.setenv("ROS_MASTER_URI", uri)
+        with pytest.raises(SystemExit, match="shell rosnode kill /robocop_sim, or use another ROS_MASTER_URI"):
+            refuse_second_simulator()
 
 
 @pytest.mark.parametrize("topic", ["/clock", "/red/odom"])

@@ -35,7 +35,9 @@ def parse(argv: List[str]) -> argparse.Namespace:
     )
     parser.add_argument("--robot", default="", help="name of one of several robots; frames are given without it")
     parser.add_argument("--world", help="the same as world:=WORLD")
-    parser.add_argument("launch", nargs="*", metavar="NAME:=VALUE", help="such as world:=stage_1; see robocop help run")
+    parser.add_argument(
+        "launch", nargs="*", default=[], metavar="NAME:=VALUE", help="such as world:=stage_1; see robocop help run"
+    )
     # argparse takes -5e-1 for an option, but not with a space before it.
     args = parser.parse_intermixed_args([f" {word}" if NEGATIVE.fullmatch(word) else word for word in argv])
     args.launch += [f"world:={args.world}"] if args.world else []

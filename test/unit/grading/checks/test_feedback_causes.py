@@ -23,6 +23,9 @@ DRIVES = {  # scenario: how the robot drives, and where its goal is
 }
 
 
+DRIFT = 0.001  # [rad/s] of the heading in /odom
+
+
 class Seen:
     """What a server calculates its errors from."""
 
@@ -70,6 +73,8 @@ ANGLE: List[Tuple[Callable[[Seen], float], str]] = [
     (lambda s: wrap(math.atan(s.dy / s.dx) - s.yaw), "A goal behind looks like one ahead, as with atan(dy / dx)"),
     (lambda s: wrap(math.asin(s.dy / s.distance) - s.yaw), "The sign of dx has no effect, as with asin(dy / distance)"),
     (lambda s: wrap(s.direction - math.degrees(s.yaw)), "The heading is in degrees"),
+    (lambda s: s.direction - math.degrees(s.yaw), "The heading is in degrees"),
+    (lambda s: wrap(s.direction - math.degrees(s.yaw + DRIFT * s.at.time)), "The heading is in degrees"),
     (lambda s: -s.angle, "The sign of angle_error is wrong: it has to be the goal's direction minus the heading"),
     (lambda s: abs(s.angle), "angle_error has no sign: left and right can't be distinguished"),
     (lambda s: math.degrees(s.angle), "degrees"),

@@ -16,3 +16,9 @@ def test_coordinates_that_are_no_place_end_the_program_with_2(x, capsys):
 def test_negative_numbers_are_coordinates():
     args = parse(["-5e-1", "-2"])
     assert (args.x, args.y, args.frame) == (-0.5, -2.0, "map")
+
+
+def test_only_a_missing_coordinate_is_called_missing(capsys):
+    with pytest.raises(SystemExit):
+        parse(["0.3"])
+    assert "the following arguments are required: y\n" in capsys.readouterr().err
