@@ -74,7 +74,7 @@ def test_the_page_reports_a_killed_simulator_and_shows_the_next_one(parts, tab):
     tab.wait_for_text(SILENT)
     parts.start_simulator()
     wait_for(lambda: SILENT not in tab.text(), "the page has a report from the simulator")
-    tab.wait_for_text("server.*(lost|not|no )")  # simulated time has begun again, which ends a server
+    tab.wait_for_text("server.*(lost|not|no |waiting)")  # simulated time has begun again, which ends a server
     parts.start_server(bridge=False)
     tab.wait_for_text(READY)
     expect_a_click_to_drive_the_robot(parts, tab)

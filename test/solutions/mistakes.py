@@ -15,6 +15,7 @@ class Mistake(NamedTuple):
     lost: str
     changes: Changes
     excludes: str = ""  # the mistake that can't be made beside it
+    beside: str = ""  # checks that don't pass because of it only where another mistake makes the robot turn again
 
 
 MISTAKES: Dict[str, Mistake] = {
@@ -44,6 +45,7 @@ MISTAKES: Dict[str, Mistake] = {
         "turns_to_goal reaches_goal goal_behind far_goal stops_at_obstacle "
         "newer_goal next_goal drives_straight success_result failure_result",
         (("2.0 * angle_error))", "-2.0 * angle_error))"),),
+        beside="only_ahead_counts odd_scans",
     ),
     "turns_while_driving": Mistake(
         "drives_straight goal_behind",
