@@ -7,6 +7,8 @@ from command import make_program, robocop
 
 from aro_robocop_goto_as.process.ports import free_port
 
+pytestmark = pytest.mark.timeout(300)  # it runs whole commands
+
 # What a terminal may have; an environment lacks what is None. Each with what run, goto and doctor say about it.
 ENVIRONMENTS = {
     "another locale": ({"LC_ALL": "de_DE.UTF-8"}, ""),

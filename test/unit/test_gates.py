@@ -9,6 +9,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+pytestmark = pytest.mark.timeout(300)  # mypy and import-linter read everything
+
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src"
 PYTHON = ("src", "scripts", "launch", "test", "setup.py")

@@ -13,6 +13,8 @@ from fake_index import builds, source_release
 
 from aro_robocop_goto_as.process.ports import free_port
 
+pytestmark = pytest.mark.timeout(300)  # it builds workspaces
+
 BUILD_INPUTS = ("CMakeLists.txt", "package.xml", "setup.py", "action", "cfg", "msg", "srv", "scripts", "src")
 
 
