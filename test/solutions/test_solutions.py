@@ -138,7 +138,8 @@ def test_skeleton_or_its_server_is_graded_and_the_report_names_what_is_missing(s
     assert "No action server was created, or it was not started" in done.stdout, done.stdout + done.stderr
     html = (tmp_path / "report" / "report.html").read_text()
     assert "No action server was created" in html and "http" not in html and "src=" not in html
-    assert "replay" not in html, "nothing happens in it"
+    if submission:  # the skeleton's bridge runs, and its scenarios can be replayed
+        assert "replay" not in html, "nothing happens in it"
     assert (tmp_path / "report" / "report.json").exists()
     with rosbag.Bag(tmp_path / "report" / "server-start.bag") as bag:  # one that was closed
         assert "/scan" in bag.get_type_and_topic_info().topics
