@@ -93,7 +93,7 @@ def test_part_that_is_not_handed_in_counts_the_same_in_every_report(tmp_path) ->
     server = [it for it in PLAN.checks if it.part == "server"]
     checks = [CheckResult(it.name, "server", "", CheckOutcome.PASSED, it.points, it.points, it.extra) for it in server]
     grade = completed(Grade("anna", tuple(checks)), PLAN)
-    server = sum(check.points for check in PLAN.checks if check.part == "server")
+    server = round(sum(check.points for check in PLAN.checks if check.part == "server"), 6)
     words = f"{server:g} of {PLAN.points:g} points, 0 of {PLAN.extra:g} extra"
     assert not grade.all_right and grade.words == words
     write(grade, PLAN, {}, tmp_path)
