@@ -163,7 +163,8 @@ def main() -> None:
         ignore_all()
         sys.exit(INTERRUPTED)
     except Exception as error:  # the grader failed on this submission
-        print(f"robocop grade: could not be graded: {printable_lines(repr(error))[:MAX_SHOWN]}", file=sys.stderr)
+        shown = printable_lines(repr(error))[:MAX_SHOWN] + faults.changed_sources()
+        print(f"robocop grade: could not be graded: {shown}", file=sys.stderr)
         print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
         sys.exit(NO_GRADE)
     print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)

@@ -79,7 +79,7 @@ def main() -> None:
         sys.exit(f"robocop new: {error}")
     except OSError as error:
         sys.exit(f"robocop new: {folder} can't be created: {error.strerror}")
-    path = shlex.quote(str(folder))
+    path = shlex.quote(str(folder if Path("robocop").is_file() else folder.resolve()))  # as typed beside ./robocop
     print(
         f"Created {folder}. Complete the TODOs in its scripts/ folder.\n"
         f"Run it:   {robocop()} sim --with {path}\n"

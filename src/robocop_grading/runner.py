@@ -12,10 +12,12 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.process import child
 from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.workspace import compat_folder, places
 
 from . import record as rec
 from .attempts import counting
 from .errors import NoTimeError, UngradableError
+from .faults import changed_sources
 from .packages import provide
 from .plan import AGAIN, Plan
 from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
@@ -90,8 +92,8 @@ class Runner:
         session = [sys.executable, "-m", SESSION, str(file)]
         if self.sandbox is not None:
             session = self.sandbox.session_command(session)
-        types = self.state / "compat" / "devel" / "lib" / "python3" / "dist-packages"  # of Gazebo's messages
-        paths = f"{os.environ.get('PYTHONPATH', '')}:{types}"
+        messages = compat_folder(places()[1], self.state) / "devel" / "lib" / "python3" / "dist-packages"  # Gazebo's
+        paths = f"{os.environ.get('PYTHONPATH', '')}:{messages}"
         return self.supervise(session, {**os.environ, "PYTHONPATH": paths, "TMPDIR": str(out)}, out, script.part)
 
     def supervise(self, command: List[str], environment: Dict[str, str], out: Path, part: str) -> Recorded:
@@ -123,7 +125,7 @@ class Runner:
             status = child.end(process, None, grace)
             guard.stop()
         if not scenario:
-            raise UngradableError(f"{part}: the grader's session did not start (status {status}): {_end_of(log)}")
+            raise UngradableError(f"{part}: the grader's session did not start (status {status}): {_end_of(log)}{changed_sources()}")
         records, told = self._counting(out, part)
         problem, killed = guard.reason, ""
         for name in (it.name for it in records.values() if any(death.is_unexplained for death in it.deaths)):

@@ -125,7 +125,7 @@ def _folder(top: Path, share: Path, state: Path, builds: Path, sandbox: Optional
 def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -> Submission:
     """Single files in `top`, run in place, on top of the skeleton's package."""
     folder = top.parent if top.is_file() else top
-    reads = [top, _lab_folder(state)]  # `top` may contain helper modules
+    reads = [top, _lab_folder(share, state)]  # `top` may contain helper modules
     return _ready(top.name, folder, reads, lab_environment(share, state), Started(choices, {}, ()), is_loose=True)
 
 
@@ -157,25 +157,25 @@ def _script(part: str, choice: Choice, top: Path) -> Script:
     )
 
 
-def _lab_folder(state: Path) -> Path:
-    return state / "grade" / "lab"
+def _lab_folder(share: Path, state: Path) -> Path:
+    return workspace.folder_for(state / "grade" / "lab", SKELETON, share / "compat")
 
 
 def lab_environment(share: Path, state: Path) -> Environment:
     """The environment with the lab's action and no code of a submission; built once."""
-    folder, underlay = _lab_folder(state), compat_environment(share, state)
+    folder, underlay = _lab_folder(share, state), compat_environment(share, state)
 
     def build_lab() -> Environment:
         with tempfile.TemporaryDirectory() as source:
             make(Path(source, LAB))
             return workspace.build({LAB: Path(source, LAB)}, folder, underlay)
 
-    return workspace.build_once(folder, workspace.checksums(SKELETON, share / "compat"), underlay, build_lab)
+    return workspace.build_once(folder, underlay, build_lab)
 
 
 def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
     folder = builds / workspace_name(package.path)
-    below = [] if package.name == LAB else [_lab_folder(state)]
+    below = [] if package.name == LAB else [_lab_folder(share, state)]
     underlay = lab_environment(share, state) if below else compat_environment(share, state)
     environment = build(package.sources, folder, underlay, below, sandbox)
     copy = folder / "src" / package.name

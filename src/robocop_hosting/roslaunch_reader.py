@@ -94,7 +94,7 @@ def _is_found(node: Node) -> bool:
     """Return whether roslaunch finds the node's program on this machine."""
     try:
         return bool(find_node(node.package, node.type))
-    except ResourceNotFound:
+    except (ResourceNotFound, OSError):  # the second: of a link that leads nowhere
         return False
 
 

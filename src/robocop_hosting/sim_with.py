@@ -1,6 +1,7 @@
 """robocop sim --with PATH: builds a package in a workspace of its own and runs it against this simulator."""
 
 import argparse
+import fcntl
 import os
 import re
 import shlex
@@ -31,7 +32,7 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
 
     HostingError if roslaunch can't start one of its scripts, with the reason.
     """
-    folder = state / "with" / workspace_name(package.path)
+    folder = own_folder(state / "with", workspace_name(package.path))
     underlay = compat_environment(share, state)
     try:
         environment = build(package.sources, folder, underlay)
@@ -58,6 +59,27 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
         if not choice.is_installed and (choice.node is not None or package.launch_file is None):
             make_startable(choice, folder / "src")
     return folder, {**environment, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}, found
+
+
+def own_folder(parent: Path, name: str) -> Path:
+    """The first of NAME, NAME-1, ... in which no other `sim --with` builds or runs; this process keeps its lock."""
+    parent.mkdir(parents=True, exist_ok=True)
+    folder, number = parent / name, 0
+    while not _is_locked_now(folder):
+        number += 1
+        folder = parent / f"{name}-{number}"
+    return folder
+
+
+def _is_locked_now(folder: Path) -> bool:
+    """Try to lock a folder, by a file beside it, until this process ends; return whether that succeeded."""
+    lock = os.open(folder.with_name(f"{folder.name}.lock"), os.O_CREAT | os.O_WRONLY)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return True
+    except BlockingIOError:
+        os.close(lock)
+        return False
 
 
 def instead_of_gazebo(package: Package) -> str:

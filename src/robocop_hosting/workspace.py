@@ -131,28 +131,29 @@ def error_of(log: str, folder: Path) -> str:
     return shown[:MAX_SHOWN] if error else shown[-MAX_SHOWN:]
 
 
-def build_once(
-    folder: Path, key: str, underlay: Environment, build_workspace: Callable[[], Environment]
-) -> Environment:
-    """The environment of the workspace at `folder`, which is built unless its last build had the same key."""
-    stamp, key = folder / "built-from", f"{folder}: {key}"  # catkin writes absolute paths into what it builds
+def build_once(folder: Path, underlay: Environment, build_workspace: Callable[[], Environment]) -> Environment:
+    """The environment of the workspace at `folder`, which is built unless that has been done."""
+    stamp = folder / "built-at"
     with exclusive(folder):
-        if stamp.is_file() and stamp.read_text() == key:
+        if stamp.is_file() and stamp.read_text() == str(folder):  # catkin writes absolute paths into what it builds
             return sourced(folder / "devel" / "setup.bash", underlay)
         stamp.unlink(missing_ok=True)
         environment = build_workspace()
-        stamp.write_text(key)
+        stamp.write_text(str(folder))
     return environment
 
 
-def checksums(*folders: Path) -> str:
-    """A text that changes with any file in these folders."""
-    return " ".join(
-        f"{path.relative_to(folder.parent)}:{zlib.crc32(path.read_bytes()):x}"
-        for folder in folders
-        for path in sorted(folder.rglob("*"))
-        if path.is_file()
-    )
+def folder_for(parent: Path, *sources: Path) -> Path:
+    """The folder below `parent` for a build of these folders: another one after any change of a file in them.
+
+    So no build takes an older one away from what runs out of it.
+    """
+    checksum = 0
+    for source in sources:
+        for path in sorted(source.rglob("*")):
+            if path.is_file() and path.suffix != ".pyc":
+                checksum = zlib.crc32(os.fsencode(path.relative_to(source.parent)) + path.read_bytes(), checksum)
+    return parent / f"{checksum:08x}"
 
 
 @contextlib.contextmanager
@@ -168,14 +169,16 @@ def exclusive(folder: Path) -> Iterator[None]:
         yield
 
 
-def compat_environment(share: Path, state: Path) -> Environment:
-    """The environment with the lab's aro_sim and Gazebo's message types, on which hosted packages are built.
+def compat_folder(share: Path, state: Path) -> Path:
+    """The workspace below `state`/compat of the packages in `share`/compat, a folder of this package."""
+    return folder_for(state / "compat", share / "compat")
 
-    These packages are built from `share`/compat, a folder of this package, in `state`/compat.
-    """
-    folder, sources = state / "compat", {name: share / "compat" / name for name in COMPAT}
+
+def compat_environment(share: Path, state: Path) -> Environment:
+    """The environment with the lab's aro_sim and Gazebo's message types, on which hosted packages are built."""
+    folder, sources = compat_folder(share, state), {name: share / "compat" / name for name in COMPAT}
     underlay = base_environment()
-    return build_once(folder, checksums(share / "compat"), underlay, lambda: build(sources, folder, underlay))
+    return build_once(folder, underlay, lambda: build(sources, folder, underlay))
 
 
 def places() -> Tuple[Path, Path]:

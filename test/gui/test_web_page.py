@@ -97,13 +97,17 @@ PHONES = (UPRIGHT, TURNED, (390, 664), (750, 340))  # [pixel] the same of an iPh
 def test_on_a_phone_the_buttons_that_drive_are_in_reach_and_as_large_as_a_finger_and_name_no_keys(web, browser):
     tab = Tab(browser, web.url, touch=True)
     tab.wait_for_text(READY)
+
+    def is_in_reach(label, height):
+        box = tab.button(label).bounding_box()  # None while the panel is laid out anew
+        if box is None or box["height"] < 44.0 or box["y"] + box["height"] > height:
+            return False
+        return tab.page.evaluate(BUTTON_AT, (box["x"] + box["width"] / 2.0, box["y"] + box["height"] / 2.0)) == label
+
     for size in PHONES:
         tab.turn(size)
         for label in ("Stop", "Forward", "Left", "Back", "Right"):
-            box = tab.button(label).bounding_box()
-            middle = box["x"] + box["width"] / 2.0, box["y"] + box["height"] / 2.0
-            assert box["height"] >= 44.0 and box["y"] + box["height"] <= size[1]
-            assert tab.page.evaluate(BUTTON_AT, middle) == label
+            wait_for(lambda of=(label, size[1]): is_in_reach(*of), f"{label} is in reach at {size}")
             assert tab.button(label).evaluate(KEY_OF) == "none"
     tab.close()
 

@@ -11,6 +11,7 @@ from systems import Program, System
 
 from aro_robocop_goto_as.probes.master import running_node, unheard
 from robocop_grading import new
+from robocop_hosting.workspace import compat_folder, places
 
 NODES = Path(__file__).resolve().parent / "nodes"
 SOLUTIONS = Path(__file__).resolve().parents[1] / "solutions"
@@ -96,7 +97,8 @@ def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gaze
     )
     assert "PARAMETERS" not in system.output
     assert "world         empty\nrobot         burger\ntransforms    none from odom to the robot" in system.output
-    types = Path(os.environ["ROBOCOP_STATE"], "compat", "devel", "lib", "python3", "dist-packages")
+    state, share = places()
+    types = compat_folder(share, state) / "devel" / "lib" / "python3" / "dist-packages"
     output = system.call(
         sys.executable, str(NODES / "gazebo_calls.py"), PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}"
     ).stdout

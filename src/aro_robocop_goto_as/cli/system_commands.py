@@ -69,7 +69,7 @@ def run(arguments: List[str]) -> None:
         elif given.value("web"):
             say("no usable display; RViz is not started")
         elif program.set_up("web"):
-            say("no usable display; the web page is started instead of RViz (web:=false: neither)")
+            say("no usable display: the web page takes the place of RViz (web:=false: neither)")
             words.append("web:=true")
         else:
             say("no usable display; RViz is not started, and the web page could not be installed")
@@ -141,7 +141,7 @@ def record(arguments: List[str]) -> None:
         refuse(f"record: {bag} exists; give another name")
     folder = os.path.dirname(os.path.abspath(bag))
     if not (os.path.isdir(folder) and os.access(folder, os.W_OK)):
-        refuse(f"record: {folder} is no folder that can be written")
+        refuse(f"record: {folder} is not a folder in which a file can be created")
     require_settings()
     program.need()
     if not program.is_dry_run():

@@ -36,7 +36,7 @@ def find_world(name_or_path: str, directory: str) -> str:
     known = sorted(entry[: -len(".sdf")] for entry in entries if entry.endswith(".sdf"))
     hint = LAB_WORLD_HINT if name_or_path in LAB_WORLDS else ""
     if not is_name and not os.path.isabs(path):
-        hint = f", looked for in {os.getcwd()}: roslaunch starts nodes there, so give it absolute paths"
+        hint = f", looked for in {os.getcwd()}, where roslaunch starts its nodes; give an absolute path"
     raise WorldError(
         f"there is no world '{name_or_path}'{hint} (no file {os.path.abspath(path)}); "
         f"worlds in {directory}: {', '.join(known) or 'none'}{did_you_mean(name_or_path, known)}"

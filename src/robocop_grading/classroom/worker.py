@@ -48,7 +48,8 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
             problem = str(error)
             tracebacks: Tuple[str, ...] = ()
             if not isinstance(error, RobocopError):
-                problem, tracebacks = f"could not be graded, see {faults.FILE}: {error!r}", (traceback.format_exc(),)
+                problem = f"could not be graded, see {faults.FILE}: {error!r}{faults.changed_sources()}"
+                tracebacks = (traceback.format_exc(),)
             problem = shortened(problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", ""), MAX_PROBLEM)
             write(Grade(name, (), (problem,), tuple(notes), tracebacks=tracebacks), plan, {}, report)
         results.keep(path.name, digest, report, time.monotonic() - started)

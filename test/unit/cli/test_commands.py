@@ -67,7 +67,7 @@ def test_ros_listens_on_loopback_unless_a_setting_names_another_network(given, s
 @pytest.mark.parametrize(
     "word, started, message",
     [
-        ("world:=empty", "rviz:=false web:=true world:=empty", "the web page is started instead of RViz"),
+        ("world:=empty", "rviz:=false web:=true world:=empty", "the web page takes the place of RViz"),
         ("web:=true", "rviz:=false web:=true", "RViz is not started\n"),
         ("web:=false", "rviz:=false web:=false", "RViz is not started\n"),
         ("rviz:=true", "rviz:=true", ""),
@@ -155,7 +155,7 @@ def test_a_recording_gets_the_ending_of_a_bag_and_never_overwrites_one(tmp_path,
     assert all(re.fullmatch(words[-1], topic) for topic in ("/scan", "/robot_1/odom", "/robocop_goto_as/result"))
     (tmp_path / "lab.bag").write_text("")
     for arguments, reason in (
-        (["/nosuch/x.bag"], "/nosuch is no folder that can be written"),
+        (["/nosuch/x.bag"], "/nosuch is not a folder in which a file can be created"),
         (["lab"], "lab.bag exists; give another name"),
         (["a", "b"], "expected one file, got a b"),
     ):

@@ -13,7 +13,7 @@ from robocop_hosting.errors import HostingError
 from robocop_hosting.launch_file import LaunchNode
 from robocop_hosting.package import Started, find_package
 from robocop_hosting.scripts import Choice
-from robocop_hosting.sim_with import instead_of_gazebo, launch_file, make_startable, parsed, sort_arguments
+from robocop_hosting.sim_with import instead_of_gazebo, launch_file, make_startable, own_folder, parsed, sort_arguments
 
 PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
 
@@ -89,3 +89,7 @@ def test_script_that_roslaunch_can_not_start_is_made_executable_or_refused_with_
     assert "lab/a.py is started by '/usr/bin/env python', which the lab may not have" in told
     with pytest.raises(HostingError, match="lab/b.py has its #! line below other lines, so roslaunch can't start it"):
         make_startable(Choice(tmp_path / "lab" / "b.py", None, False, []), tmp_path)
+
+
+def test_two_that_run_the_same_package_at_once_build_in_different_folders(tmp_path: Path) -> None:
+    assert [own_folder(tmp_path / "with", "lab").name for _ in range(3)] == ["lab", "lab-1", "lab-2"]

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from robocop_hosting.workspace import build_once, error_of
+from robocop_hosting.workspace import build_once, error_of, folder_for
 
 WARNING = """-- catkin 0.8.10
 CMake Warning at /usr/share/genmsg/cmake/genmsg-extras.cmake:49 (message):
@@ -33,7 +33,7 @@ def test_a_workspace_that_was_moved_is_built_again(tmp_path: Path) -> None:
     built = []
 
     def use(folder: Path) -> None:
-        build_once(folder, "checksums", {}, lambda: built.append(folder) or {})
+        build_once(folder, {}, lambda: built.append(folder) or {})
 
     here, there = tmp_path / "here", tmp_path / "there"
     (here / "devel").mkdir(parents=True)
@@ -43,3 +43,17 @@ def test_a_workspace_that_was_moved_is_built_again(tmp_path: Path) -> None:
     here.rename(there)
     use(there)
     assert built == [here, there]
+
+
+def test_a_changed_renamed_or_new_source_file_is_built_in_another_folder(tmp_path: Path) -> None:
+    source = tmp_path / "source"
+    source.mkdir()
+    (source / "one").write_text("text")
+    folders = [folder_for(tmp_path, source), folder_for(tmp_path, source)]
+    (source / "one").write_text("another text")
+    folders.append(folder_for(tmp_path, source))
+    (source / "one").rename(source / "two")
+    folders.append(folder_for(tmp_path, source))
+    (source / "three").touch()
+    folders.append(folder_for(tmp_path, source))
+    assert len({*folders}) == 4 and folders[0] == folders[1]
