@@ -125,7 +125,9 @@ class Runner:
             status = child.end(process, None, grace)
             guard.stop()
         if not scenario:
-            raise UngradableError(f"{part}: the grader's session did not start (status {status}): {_end_of(log)}{changed_sources()}")
+            raise UngradableError(
+                f"{part}: the grader's session did not start (status {status}): {_end_of(log)}{changed_sources()}"
+            )
         records, told = self._counting(out, part)
         problem, killed = guard.reason, ""
         for name in (it.name for it in records.values() if any(death.is_unexplained for death in it.deaths)):
