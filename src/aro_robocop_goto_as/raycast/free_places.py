@@ -61,16 +61,16 @@ def _place(room: _Room, around: Pose2D) -> Pose2D:
     if room.at(around.x, around.y) >= room.min_distance:
         return around
     centre = (around.x, around.y) if world.occupancy is None else world.occupancy.nearest_free(around.x, around.y)
-    narrow: Optional[Pose2D] = None  # the nearest place with less than CLEARANCE
+    fallback: Optional[Pose2D] = None  # the nearest place with less than CLEARANCE
     for spacing, reach in SEARCHES:
         for x, y in _outwards(centre, spacing, reach):
             distance = room.at(x, y)
             if distance >= CLEARANCE:
                 return Pose2D(x, y, around.yaw)
-            if narrow is None and distance >= room.min_distance:
-                narrow = Pose2D(x, y, around.yaw)
-    if narrow is not None:
-        return narrow
+            if fallback is None and distance >= room.min_distance:
+                fallback = Pose2D(x, y, around.yaw)
+    if fallback is not None:
+        return fallback
     raise ParameterError(
         f"spawn: world {world.name!r} has no room for a robot within {SEARCHES[-1][1]:g} m of x {around.x:g} "
         f"y {around.y:g}; give a spawn elsewhere"

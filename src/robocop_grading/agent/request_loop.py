@@ -138,31 +138,31 @@ class RequestLoop:
 
     def _answer(self, until_ns: int, clock_ns: int, messages: List[wire.Message]) -> bool:
         """Advance to `until_ns`; if `clock_ns` has changed, /clock ticks first. Return False if a thread still runs."""
-        rested, ticks = True, clock_ns != self.clock.now_ns
+        all_wait, ticks = True, clock_ns != self.clock.now_ns
         if (messages or ticks) and not self._busy:
-            rested = self._advance_to(until_ns - 1)
+            all_wait = self._advance_to(until_ns - 1)
         if messages:
             with scheduler.work():
                 for topic, data in messages:
                     self.grader.feed(topic, data)
             if ticks and not self._busy:  # its loops find the newest data when the clock wakes them up
-                rested = self._rest() and rested
-        is_at_rest = ticks and not self.clock.set(clock_ns) and rested and not self._busy
+                all_wait = self._run_until_all_wait() and all_wait
+        all_wait_already = ticks and not self.clock.set(clock_ns) and all_wait and not self._busy
         self.clock.end_sleeps()
-        return self._advance_to(until_ns, is_at_rest) and rested
+        return self._advance_to(until_ns, all_wait_already) and all_wait
 
-    def _advance_to(self, until_ns: int, is_at_rest: bool = False) -> bool:
+    def _advance_to(self, until_ns: int, all_wait_already: bool = False) -> bool:
         """Let everything happen until that time; return False if some thread still runs."""
-        rested = True
+        all_wait = True
         while True:
-            rested = (is_at_rest or self._rest()) and rested
-            is_at_rest = False
+            all_wait = (all_wait_already or self._run_until_all_wait()) and all_wait
+            all_wait_already = False
             if scheduler.next_deadline() > until_ns:
                 scheduler.advance(until_ns)
-                return rested
+                return all_wait
             scheduler.wake_next()
 
-    def _rest(self) -> bool:
+    def _run_until_all_wait(self) -> bool:
         """Wait until all threads wait; return False if they use more processor time than is allowed."""
         poll_period, started = 0.001, stuck.processor_time() if self._busy else math.inf
         turn, turn_started = -1, 0.0
@@ -170,12 +170,12 @@ class RequestLoop:
             idle = scheduler.wait_until_idle(poll_period)
             stuck.children.poll()
             asleep = None if idle else stuck.all_asleep()
-            is_over = idle or (asleep is not None and not scheduler.move_to_background(asleep))
-            if is_over or scheduler.only_background_runs():
+            nothing_runs = idle or (asleep is not None and not scheduler.move_to_background(asleep))
+            if nothing_runs or scheduler.only_background_runs():
                 if files.wake():
                     if count % MANY:
                         continue
-                elif is_over and not stuck.children.busy:
+                elif nothing_runs and not stuck.children.busy:
                     self._budget.reset()
                     return True
                 if idle:

@@ -12,11 +12,11 @@ T = TypeVar("T", Feedback, Sample)
 MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and driving are right
 ENOUGH = 4  # fewer commands show nothing
 MAX_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
-BELIEVED = 1.2 * GOAL_RADIUS  # [m]
+NEAR_GOAL = 1.2 * GOAL_RADIUS  # [m]
 ITERATION = 0.15  # [s] of a server's loop, with a tick of the recording
 
 
-def alike(_record: Record, failure: Failed, earlier: Failed) -> bool:
+def same_kind(_record: Record, failure: Failed, earlier: Failed) -> bool:
     """Return whether both failures are of the same kind."""
     return failure.kind is not None and failure.kind is earlier.kind
 
@@ -48,7 +48,7 @@ def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
     return failure.kind is not None and logged(record, UNCAUGHT, end)
 
 
-def none_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
+def no_state_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether actionlib had to set a goal's terminal state."""
     return logged(record, NO_STATE_LOGGED, failure.time)
 
@@ -59,7 +59,7 @@ def silent(record: Record, goal: SentGoal) -> bool:
     return not told and not any(command.time >= goal.time for command in record.commands)
 
 
-def nothing_came(record: Record, failure: Failed, earlier: Failed) -> bool:
+def nothing_published(record: Record, failure: Failed, earlier: Failed) -> bool:
     """Return whether nothing came from the server after it got the goal, and the earlier failure says so, too."""
     return failure.goal is not None and silent(record, failure.goal) and earlier.kind is Kind.NO_RESULT
 
@@ -69,34 +69,34 @@ def died_before(record: Record, failure: Failed, _earlier: Failed) -> bool:
     return bool(record.deaths) and failure.goal is not None and silent(record, failure.goal)
 
 
-def came(record: Record, failure: Failed) -> bool:
+def came_near(record: Record, failure: Failed) -> bool:
     """Return whether the robot came to the goal before the failure."""
     goal = failure.goal
     there = record.samples_between(goal.time, failure.time) if goal else []
-    return goal is not None and any(goal.errors_at(it)[0] < BELIEVED for it in there)
+    return goal is not None and any(goal.errors_at(it)[0] < NEAR_GOAL for it in there)
 
 
-def astray(record: Record, failure: Failed, _earlier: Failed) -> bool:
+def never_came_near(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether the server was working on the goal, and the robot never came to it."""
-    return failure.goal is not None and not silent(record, failure.goal) and not came(record, failure)
+    return failure.goal is not None and not silent(record, failure.goal) and not came_near(record, failure)
 
 
-def believed(record: Record, failure: Failed, _earlier: Failed) -> bool:
+def reported_near(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether an end far from the goal fits the position_error that the server reported itself."""
-    own = record.feedback_of(failure.goal) if failure.goal else []
-    return bool(own) and own[-1].position_error <= BELIEVED
+    reports = record.feedback_of(failure.goal) if failure.goal else []
+    return bool(reports) and reports[-1].position_error <= NEAR_GOAL
 
 
-def unaware(record: Record, failure: Failed, _earlier: Failed) -> bool:
+def never_reported_near(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether the server never reported a position_error that means that the goal is reached."""
-    own = record.feedback_of(failure.goal) if failure.goal else []
+    reports = record.feedback_of(failure.goal) if failure.goal else []
     end = end_of(record, failure)
-    return not any(it.position_error < GOAL_RADIUS and it.time < end - ITERATION for it in own)
+    return not any(it.position_error < GOAL_RADIUS and it.time < end - ITERATION for it in reports)
 
 
-def unaware_there(record: Record, failure: Failed, earlier: Failed) -> bool:
+def near_without_report(record: Record, failure: Failed, earlier: Failed) -> bool:
     """Return whether the robot came to the goal, and the server never reported a position_error that says so."""
-    return came(record, failure) and unaware(record, failure, earlier)
+    return came_near(record, failure) and never_reported_near(record, failure, earlier)
 
 
 def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -104,14 +104,13 @@ def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
     goal = failure.goal
     if goal is None or failure.kind is Kind.TOO_FAR:
         return False
-    own = _latest(record.feedback_of(goal))
-    true = _latest(record.samples)
+    latest_report, latest_sample = _latest(record.feedback_of(goal)), _latest(record.samples)
     fits = []
     for command in record.commands:
         if goal.time <= command.time < record.active_until(goal):
-            told, there = own(command.time), true(command.time)
-            if told and there and not _fits(goal.errors_at(there)[1], command):
-                fits.append(_fits(told.angle_error, command))
+            report, sample = latest_report(command.time), latest_sample(command.time)
+            if report and sample and not _fits(goal.errors_at(sample)[1], command):
+                fits.append(_fits(report.angle_error, command))
     return len(fits) >= ENOUGH and sum(fits) >= (1.0 - MAX_OTHERS) * len(fits)
 
 
@@ -144,7 +143,7 @@ def at_wall(_record: Record, failure: Failed, _earlier: Failed) -> bool:
     return failure.goal is not None and failure.goal.ends == "ABORTED"
 
 
-def kept(record: Record, failure: Failed, earlier: Failed) -> bool:
+def wrong_since_a_later_goal(record: Record, failure: Failed, earlier: Failed) -> bool:
     """Return whether the feedback is wrong from a later goal on, as a server keeps what an earlier one has set."""
     return earlier.kind is Kind.NOT_RESET and any(failure.time > goal.time for goal in record.goals[1:])
 
@@ -175,41 +174,41 @@ FOLLOWS = (
     # Feedback.
     Row("feedback_rate", Kind.TOO_LITTLE, "no_exception", raised),
     Row("feedback_angle", Kind.WRONG_POSITION, "feedback_position"),
-    Row("feedback_angle", Kind.OLD_POSE, "feedback_position", alike),
-    Row("feedback_position feedback_angle", None, "next_goal", kept),
+    Row("feedback_angle", Kind.OLD_POSE, "feedback_position", same_kind),
+    Row("feedback_position feedback_angle", None, "next_goal", wrong_since_a_later_goal),
     # How goals end.
     Row("only_ahead_counts", Kind.ABORTED, "stops_at_obstacle", too_early_elsewhere),
     Row(
         f"{ENDINGS} turns_to_goal success_result failure_result stands_at_end one_ending", None, "no_exception", raised
     ),
-    Row("success_result failure_result", Kind.NO_MESSAGE, "one_ending", none_set),
+    Row("success_result failure_result", Kind.NO_MESSAGE, "one_ending", no_state_set),
     Row(ENDINGS, Kind.NO_RESULT, "stays_alive", died),
-    Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_rate", unaware),
-    Row(ENDINGS, Kind.TOO_FAR, "feedback_position", believed),
-    Row(ENDINGS, Kind.SUCCEEDED, "feedback_position", believed),
-    Row(ENDINGS, Kind.NO_RESULT, "feedback_position", unaware_there),
-    Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_position", unaware_there),
+    Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_rate", never_reported_near),
+    Row(ENDINGS, Kind.TOO_FAR, "feedback_position", reported_near),
+    Row(ENDINGS, Kind.SUCCEEDED, "feedback_position", reported_near),
+    Row(ENDINGS, Kind.NO_RESULT, "feedback_position", near_without_report),
+    Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_position", near_without_report),
     Row(f"{ENDINGS} turns_to_goal drives_straight", None, "feedback_angle", misled),
-    Row(ENDINGS, Kind.NO_RESULT, "turns_to_goal", astray),
-    Row(ENDINGS, Kind.NO_RESULT, "drives_straight", astray),
-    Row(ENDINGS, None, "reaches_goal", alike),
-    Row("feedback_rate turns_to_goal cancel newer_goal", None, "reaches_goal", nothing_came),
-    Row("turns_to_goal", Kind.MOVES_FIRST, "already_there", alike),
-    Row("stops_at_obstacle", Kind.MOVES_FIRST, "already_there", alike),
-    Row("stops_at_obstacle", Kind.MOVES_FIRST, "turns_to_goal", alike),
+    Row(ENDINGS, Kind.NO_RESULT, "turns_to_goal", never_came_near),
+    Row(ENDINGS, Kind.NO_RESULT, "drives_straight", never_came_near),
+    Row(ENDINGS, None, "reaches_goal", same_kind),
+    Row("feedback_rate turns_to_goal cancel newer_goal", None, "reaches_goal", nothing_published),
+    Row("turns_to_goal", Kind.MOVES_FIRST, "already_there", same_kind),
+    Row("stops_at_obstacle", Kind.MOVES_FIRST, "already_there", same_kind),
+    Row("stops_at_obstacle", Kind.MOVES_FIRST, "turns_to_goal", same_kind),
     Row("turns_to_goal", None, "stays_alive", died_before),
     Row("odd_scans", None, "stops_at_obstacle", at_wall),
     Row("stops_at_obstacle odd_scans", Kind.MOVING, "stands_at_end"),
     Row("goal_behind", Kind.LONG_TURN, "drives_straight"),
     Row("goal_behind", Kind.LONG_TURN, "turns_to_goal"),
-    Row("newer_goal", None, "cancel", alike),
-    Row("goal_behind newer_goal", None, "next_goal", alike),
+    Row("newer_goal", None, "cancel", same_kind),
+    Row("goal_behind newer_goal", None, "next_goal", same_kind),
     Row("next_goal", None, "reaches_goal"),
     # The bridge.
     Row(CLICKS, Kind.NO_GOAL, "bridge_alive"),
     Row(CLICKS, Kind.NO_REPORT, "bridge_alive"),
-    Row("cancels_older waits_for_server goal_frame", None, "forwards_goal", alike),
-    Row("goal_frame", None, "cancels_older", alike),
+    Row("cancels_older waits_for_server goal_frame", None, "forwards_goal", same_kind),
+    Row("goal_frame", None, "cancels_older", same_kind),
     # What a check needs to be reached.
     Row("feedback_position feedback_angle", Kind.NOT_REACHED, "feedback_rate"),
     Row("drives_straight", Kind.NOT_REACHED, "turns_to_goal"),

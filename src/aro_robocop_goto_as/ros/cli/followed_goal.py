@@ -25,7 +25,7 @@ from ..client.goal_frame import GoalTransformer
 from ..client.goal_states import ending
 from ..marker_shapes import MarkerStore, solids
 from ..waiting import wait_until
-from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT, complain
+from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT, complain, tell
 
 ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own
 PAUSE_TIMEOUT = 1.0  # [s, wall] without a change of simulated time
@@ -68,7 +68,7 @@ class _ProgressLine:
             return
         phase = feedback.message.split(",")[0]
         if phase != self.phase:
-            print(line, flush=True)
+            tell(line)
         self.phase = phase
 
     def close(self) -> None:
@@ -136,7 +136,7 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
         return NOT_REACHED
     _watch_walls(position, transformer, lambda: odometry.message)
     given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
-    print(f"goal {given}" + (f", {place(position.x, position.y, odom)}" if given.split()[-1] != odom else ""))
+    tell(f"goal {given}" + (f", {place(position.x, position.y, odom)}" if given.split()[-1] != odom else ""))
     status = follow(client, position)
     if simulator.message is not None and args.robot.strip("/") in simulator.message.slipped:
         complain(SLIPPED)
@@ -210,5 +210,5 @@ def follow(client: actionlib.ActionClient, position: Point) -> int:
         goal.cancel()
         done.wait(SERVER_TIMEOUT)
     progress.close()
-    print(answer)
+    tell(answer)
     return REACHED if is_reached else NOT_REACHED

@@ -22,7 +22,7 @@ from ...probes import master, settings
 from ...process import child, orphans, signals
 from ...process.ports import free_port
 from ..share import share
-from .goto_arguments import NOT_REACHED, SERVER_TIMEOUT, START_TIMEOUT, WRONG_ARGUMENTS, complain, parse
+from .goto_arguments import NOT_REACHED, SERVER_TIMEOUT, START_TIMEOUT, WRONG_ARGUMENTS, complain, parse, tell
 
 LAUNCH_FILE = Path(share(), "launch", "robocop_goto_as.launch")
 END_TIMEOUT = 30.0  # [s, wall] for the system to end; roslaunch itself kills nodes after 17 s
@@ -73,7 +73,7 @@ def _go_in_own_system(args: argparse.Namespace, given: LaunchArguments) -> int:
         complain(str(error))
         return WRONG_ARGUMENTS
     arguments = ["rviz:=false", "bridge:=false", *given.words]
-    print("robocop goto: no ROS master answers; starting a headless simulator for this goal", flush=True)
+    tell("robocop goto: no ROS master answers; starting a headless simulator for this goal")
     log = Path(rospkg.get_ros_home(), "robocop_goto.log")
     status = NOT_REACHED
     with _own_system(arguments, log) as system:
@@ -83,7 +83,7 @@ def _go_in_own_system(args: argparse.Namespace, given: LaunchArguments) -> int:
             status = go_to(args, START_TIMEOUT, ended=lambda: system.poll() is not None)
     errors = [line for line in _lines(log) if "[FATAL]" in line]
     if started and not errors:
-        print(f"robocop goto: the simulator has ended; {robocop()} run starts one that stays, with RViz or a web page")
+        tell(f"robocop goto: the simulator has ended; {robocop()} run starts one that stays, with RViz or a web page")
     if errors or not started:
         lines = ["the system started for this goal failed:", *errors, f"its complete output is in {log}"]
         complain("\n".join(lines))

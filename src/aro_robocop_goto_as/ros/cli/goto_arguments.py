@@ -60,6 +60,11 @@ def _metres(text: str) -> float:
     return value
 
 
+def tell(text: str) -> None:
+    """Print a line to standard output."""
+    print(text, flush=True)
+
+
 def complain(text: str) -> None:
     """Print a message to standard error."""
     print(f"robocop goto: {text}", file=sys.stderr, flush=True)

@@ -37,12 +37,15 @@ class GoalTransformer:
         return pose.header.frame_id.lstrip("/") or self.default_frame
 
     def resolve(self, pose: PoseStamped) -> Point:
-        """The pose's position in goal_frame at the pose's stamp.
+        """The pose's position in goal_frame, by the first of these that connects the two frames:
 
-        Waits up to `timeout` [s, wall] for the transform at the goal's stamp. Then it uses the latest odometry if the
-        odometry connects the frames, otherwise the latest transform of TF. If only the odometry connects the frames,
-        it is used without waiting. FrameError if the frames are not connected, and for a position that is not finite
-        or beyond MAX_COORDINATE, before or after the transform.
+        1. the transform of TF at the pose's stamp, waited for up to `timeout` [s, wall]; not waited for where TF does
+           not connect the frames at any time and odometry does;
+        2. the latest odometry, if it is from goal_frame to the pose's frame;
+        3. the latest transform of TF.
+
+        FrameError if none does, and for a position that is not finite or beyond MAX_COORDINATE, before or after the
+        transform.
         """
         x, y, z = (float(value) for value in ros_numpy.numpify(pose.pose.position))
         convert.require_near(x=x, y=y, z=z)

@@ -1,6 +1,7 @@
 """The ticks of the control loop: whole multiples of its period in ROS time, at 10 Hz for instance 0.1 s, 0.2 s, ..."""
 
 import contextlib
+import math
 import threading
 from fractions import Fraction
 from typing import Callable, Optional, Sequence
@@ -30,8 +31,7 @@ class Ticks:
         node.
         """
         self.command: Optional[Twist2D] = None  # since the last answer
-        ticks, seconds = Fraction(rate).limit_denominator(10**6).as_integer_ratio()
-        self._ticks, self._span_ns = ticks, seconds * NANOSECONDS  # so many ticks in so much time [ns], exactly
+        self._period_ns = NANOSECONDS / Fraction(rate).limit_denominator(10**6)  # exactly
         self._inputs, self._on_set_back = inputs, on_set_back
         self._has_joined = False
         self._changed = threading.Condition()
@@ -74,8 +74,8 @@ class Ticks:
 
     def _tick(self, time_ns: int, later: int = 0) -> int:
         """The time of the newest tick at a time [ns], or of a `later` tick; rounded down as the simulator does."""
-        number = ((time_ns + 1) * self._ticks - 1) // self._span_ns + later
-        return number * self._span_ns // self._ticks
+        number = math.ceil((time_ns + 1) / self._period_ns) - 1 + later
+        return math.floor(number * self._period_ns)
 
     def wait_for_next(self, last_ns: int, is_interrupted: Callable[[], bool]) -> int:
         """Wait until there is a later tick than the last one, or for an interruption; the newest tick [ns]."""
