@@ -23,8 +23,8 @@ from robocop_hosting.scripts import (
     files_below,
     interpreter,
     listens_to_clicks,
-    obstacles,
     part_of,
+    start_problems,
 )
 from robocop_hosting.tree import read_text
 from robocop_hosting.workspace import CPP, Environment, compat_environment, places, workspace_name
@@ -137,7 +137,7 @@ def _ready(
     for script in scripts:
         others = ", ".join(str(other.relative_to(top)) for other in found.choices[script.part].others)
         notes += [f"{script.part}: {script.path.relative_to(top)} is graded, but not {others}"] if others else []
-        notes += _obstacles(script.part, found.choices[script.part], is_loose)
+        notes += _start_problems(script.part, found.choices[script.part], is_loose)
         notes += [f"{script.part}: {script.path.name}, {text}" for text in advice(read_text(script.path))]
     return Submission(name, reads, environment, scripts, found.parameters, notes)
 
@@ -195,13 +195,13 @@ def _ungraded_bridge(choices: Mapping[str, Choice]) -> Iterator[str]:
         yield f"bridge: not graded: {name} has a bridge, too; only one with a script of its own can be graded"
 
 
-def _obstacles(part: str, choice: Choice, is_loose: bool) -> Iterator[str]:
+def _start_problems(part: str, choice: Choice, is_loose: bool) -> Iterator[str]:
     """Why roslaunch could not start a script that is started here by its interpreter.
 
     `is_loose`: the script is not in a package, so copying may have dropped its execute bit.
     """
     name = choice.path.name
-    for problem, remedy in obstacles(choice.path):
+    for problem, remedy in start_problems(choice.path):
         if is_loose and problem == NOT_EXECUTABLE:
             continue
         result = "so roslaunch can't start it in the lab"

@@ -11,7 +11,7 @@ from aro_robocop_goto_as.names import PACKAGE
 from . import tree
 from .errors import HostingError
 from .launch_file import LaunchNode, read
-from .scripts import ASIDE, PARTS, Choice, best_place, choose, files_below
+from .scripts import ASIDE, PARTS, Choice, choose, doubts_of_place, files_below
 from .tree import read_bytes, read_xml
 from .workspace import Environment, Run
 
@@ -147,13 +147,13 @@ def _name(manifest: Path) -> str:
 def _launch_file(folder: Path, wanted: str) -> Tuple[Optional[Path], List[Path]]:
     """The launch file to start, and all launch files; HostingError if several different files have its name."""
     files = [path for path in files_below(folder) if path.suffix == ".launch"]
-    files.sort(key=lambda path: (best_place(path, folder, "launch"), path))
+    files.sort(key=lambda path: (doubts_of_place(path, folder, "launch"), path))
     matching = [path for path in files if path.name == (wanted or LAUNCH_FILE)]
     if wanted and not matching:
         known = ", ".join(sorted(path.name for path in files)) or "none"
         raise HostingError(f"{folder}: no launch file {wanted!r}; available: {known}")
     for path in matching[1:]:
-        equal = best_place(path, folder, "launch") == best_place(matching[0], folder, "launch")
+        equal = doubts_of_place(path, folder, "launch") == doubts_of_place(matching[0], folder, "launch")
         if equal and read_bytes(path) != read_bytes(matching[0]):
             names = " and ".join(str(it.relative_to(folder)) for it in (matching[0], path))
             raise HostingError(f"{names}: nothing says which of them is to be started: remove one")

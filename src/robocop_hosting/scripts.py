@@ -8,7 +8,7 @@ import re
 import tokenize
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Collection, Dict, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Collection, Dict, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 from aro_robocop_goto_as.names import BRIDGE, SERVER
 
@@ -45,13 +45,27 @@ class Choice:
     others: List[Path]  # except those that it imports
 
 
+class _Doubts(NamedTuple):
+    """What tells against a script as a part's own; the first difference between two scripts counts."""
+
+    is_not_launched: bool  # by the launch file
+    is_aside: bool  # a copy, a backup, a test
+    has_another_name: bool  # than the handout's
+    is_module: bool  # it makes no node
+    only_imports: bool  # one of the modules that it imports is the part
+    may_be_another: bool  # the client of another action
+    is_not_installed: bool  # by catkin_install_python
+    is_not_executable: bool
+    is_elsewhere: bool  # not in scripts/
+
+
 @dataclass(frozen=True)
 class _Candidate:
     part: str
     path: Path
     node: Optional[LaunchNode]
     is_installed: bool
-    rank: Tuple[bool, ...]  # the smallest one is started
+    doubts: _Doubts
     imports: Set[str]  # names of modules
 
 
@@ -103,8 +117,8 @@ def files_below(top: Path) -> List[Path]:
     return found
 
 
-def best_place(path: Path, top: Path, folder: str) -> Tuple[bool, bool, bool]:
-    """A key that is smallest for the likeliest file: not in a copy, executable, in the right kind of folder."""
+def doubts_of_place(path: Path, top: Path, folder: str) -> Tuple[bool, bool, bool]:
+    """Whether a file is in a copy, is not executable, is not in a folder of this name: smallest for the likeliest."""
     is_aside = ASIDE.search(str(path.relative_to(top))) is not None
     return is_aside, not os.access(path, os.X_OK), path.parent.name != folder
 
@@ -121,13 +135,13 @@ def choose(
     scripts are equally likely, unless not `expects_one`.
     """
     installed = set(_relayed(relays))
-    candidates = sorted(_candidates(top, nodes, installed), key=lambda it: (it.rank, it.path))
+    candidates = sorted(_candidates(top, nodes, installed), key=lambda it: (it.doubts, it.path))
     chosen = {}
     for part in PARTS.values():
         own = [it for it in candidates if it.part == part]
         if own:
             best = own[0]
-            equal = [it for it in own if it.rank == best.rank and read_bytes(it.path) != read_bytes(best.path)]
+            equal = [it for it in own if it.doubts == best.doubts and read_bytes(it.path) != read_bytes(best.path)]
             if equal and expects_one:
                 names = " and ".join(str(it.path.relative_to(top)) for it in [best, *equal])
                 raise HostingError(
@@ -160,11 +174,12 @@ def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[by
         if not part:
             part, is_sure = _part_by_name(path.name), True
         if part and (is_sure or node is not None):
-            is_aside, *place = best_place(path, top, "scripts")
+            is_aside, *place = doubts_of_place(path, top, "scripts")
             is_installed = os.path.realpath(os.fsencode(path)) in installed
-            is_module = b"init_node" not in content
-            order = (node is None, is_aside, path.name not in PARTS, is_module, not own[0], not is_sure)
-            yield _Candidate(part, path, node, is_installed, (*order, not is_installed, *place), imports)
+            has_another_name, is_module = path.name not in PARTS, b"init_node" not in content
+            of_content = has_another_name, is_module, not own[0], not is_sure
+            doubts = _Doubts(node is None, is_aside, *of_content, not is_installed, *place)
+            yield _Candidate(part, path, node, is_installed, doubts, imports)
 
 
 def _programs(top: Path, names: Collection[str]) -> Iterator[Tuple[Path, bytes]]:
@@ -183,7 +198,7 @@ def _imports(content: bytes) -> Set[str]:
     return {name for line in IMPORT.findall(content) for name in re.findall(r"\w+", line.decode())}
 
 
-def obstacles(path: Path) -> Iterator[Tuple[str, str]]:
+def start_problems(path: Path) -> Iterator[Tuple[str, str]]:
     """Why Linux can't start a script, each with its remedy."""
     content = read_bytes(path)
     first, _, rest = content.partition(b"\n")

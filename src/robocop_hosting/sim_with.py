@@ -20,7 +20,7 @@ from .errors import HostingError
 from .node_errors import NodeErrors
 from .package import GAZEBO, Package, Started, arguments_of, find_package, names_gazebo, started
 from .scratch import scratch_folder
-from .scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, obstacles
+from .scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, start_problems
 from .workspace import Environment, build, compat_environment, places, run_plain, workspace_name
 
 NOT_FOUND = re.compile(r'(?:configuration file provided by "|Could NOT find )(\w+)')  # by CMake
@@ -100,7 +100,7 @@ def make_startable(choice: Choice, source: Path) -> None:
             "fix the original with: chmod +x"
         )
         choice.path.chmod(0o755)
-    for problem, remedy in obstacles(choice.path):
+    for problem, remedy in start_problems(choice.path):
         raise HostingError(f"{name} {problem}, so roslaunch can't start it: {remedy}")
     program = interpreter(choice.path)
     if program:

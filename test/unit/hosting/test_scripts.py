@@ -8,7 +8,7 @@ from hosted_packages import tree
 
 from robocop_hosting.errors import HostingError
 from robocop_hosting.launch_file import LaunchNode
-from robocop_hosting.scripts import choose, interpreter, obstacles
+from robocop_hosting.scripts import choose, interpreter, start_problems
 
 SERVER = "actionlib.SimpleActionServer('robocop_goto_as')"
 RAW = "Subscriber('/robocop_goto_as/goal', GoToPositionActionGoal); Publisher('x', GoToPositionActionResult)"
@@ -113,9 +113,9 @@ def test_reason_why_linux_can_not_start_a_script_is_named(tmp_path: Path, conten
     script = tmp_path / "a.py"
     script.write_bytes(content.encode())
     script.chmod(0o755)
-    assert [problem for problem, _ in obstacles(script)] == expected
+    assert [problem for problem, _ in start_problems(script)] == expected
     script.chmod(0o644)
-    assert [problem for problem, _ in obstacles(script)] == ["is not executable", *expected]
+    assert [problem for problem, _ in start_problems(script)] == ["is not executable", *expected]
 
 
 @pytest.mark.parametrize(
