@@ -31,6 +31,6 @@ def absolute_if_named(robot: str, name: str) -> str:
     return absolute(robot, name) if robot else name
 
 
-def place(x: float, y: float, frame: str) -> str:
+def position_text(x: float, y: float, frame: str) -> str:
     """A position [m] in words, as messages name it."""
     return f"x {x:.2f} y {y:.2f} in {frame}"

@@ -12,7 +12,7 @@ From a hand-in to its grade:
       |       ^
       | GO    | MESSAGE ... DONE      one socket to the node's process: until when, messages; what it has published
       v       |
-    agent/            in that process: channel (turns), scheduler (one thread at a time, simulated time),
+    agent/            in that process: request_loop (the grader's requests), scheduler (turns, simulated time),
                       connections, ros_graph (rospy's topics and services, and the master, without a network)
       |
       | record        one for each scenario: samples of the truth, and everything that the node sent

@@ -3,7 +3,8 @@
 from dataclasses import replace
 from typing import Dict, List, Mapping, Tuple
 
-from .checks import CHECKS, Failed
+from .checks import CHECKS, Failed, NotReached, Verdict
+from .faults import Faults
 from .plan import AGAIN, Plan
 from .record import Record
 
@@ -29,19 +30,22 @@ def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Recor
     best = {name: records.get(name + AGAIN, record) for name, record in chosen.items()}
     order, counted = plan.scenarios_of("server"), []
     told: Dict[str, List[str]] = {}  # names of scenarios, by what to say of them
+    failing = [it for it in best if _fails(plan, best[it])] if repeated else []
     for name in repeated:
-        mistakes = [it for it in best if it != name and _fails(plan, best[it])]
+        mistakes = [it for it in failing if it != name]
         is_left_behind = any(order.index(it) < order.index(name) or len(best[it].goals) > 1 for it in mistakes)
-        if is_left_behind or _fails(plan, best[name]):
+        if is_left_behind or name in failing:
             chosen[name] = replace(best[name], name=name)
             counted.append(name)
-        if not _fails(plan, best[name]):
+        if name not in failing:
             told.setdefault(LEFT_BEHIND if is_left_behind else WENT_WRONG, []).append(name)
     return chosen, counted, [f"failed {words}: {', '.join(names)}" for words, names in told.items()]
 
 
 def _fails(plan: Plan, record: Record) -> bool:
-    """Return whether a check of the plan fails in this record."""
+    """Return whether a check of the plan fails in this record; the judge reports an exception in a check."""
     scenario = record.name[: -len(AGAIN)] if record.name.endswith(AGAIN) else record.name
     names = [it.name for it in plan.checks if scenario in it.scenarios]
-    return any(isinstance(CHECKS[name](record, plan.limits), Failed) for name in names)
+    unjudged: Verdict = NotReached("")
+    verdicts = (Faults().tried(name, unjudged, CHECKS[name], record, plan.limits) for name in names)
+    return any(isinstance(verdict, Failed) for verdict in verdicts)

@@ -1,6 +1,7 @@
 """robocop grade: judge a submission and write a report."""
 
 import argparse
+import contextlib
 import os
 import sys
 import traceback
@@ -165,7 +166,8 @@ def main() -> None:
     except Exception as error:  # the grader failed on this submission
         shown = printable_lines(repr(error))[:MAX_SHOWN] + faults.changed_sources()
         print(f"robocop grade: could not be graded: {shown}", file=sys.stderr)
-        print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
+        with contextlib.suppress(OSError, RobocopError):  # the disk may be full
+            print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
         sys.exit(NO_GRADE)
     print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)
     print(as_text(grade, {script.part: script.next_step for script in submission.scripts}))

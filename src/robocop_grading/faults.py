@@ -30,7 +30,7 @@ class Faults:
 
 def changed_sources() -> str:
     """What follows an error's text if this program's sources, which are used in place, have changed since its start."""
-    if any(path.stat().st_mtime > STARTED for path in SOURCES.rglob("*.py")):
+    if any(path.is_file() and path.stat().st_mtime > STARTED for path in SOURCES.rglob("*.py")):
         return "; the sources of ./robocop have changed since it was started, as by git pull: start it again"
     return ""
 

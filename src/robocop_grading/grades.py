@@ -2,11 +2,11 @@
 
 import enum
 from dataclasses import dataclass, replace
-from typing import Dict, Iterable, List, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from .checks import CHECKS, Failed
 from .checks.verdict import Kind
-from .plan import Plan
+from .plan import Plan, total
 from .texts import sentences
 
 
@@ -173,8 +173,3 @@ def completed(grade: Grade, plan: Plan) -> Grade:
         for it in missing
     ]
     return replace(grade, checks=(*grade.checks, *results))
-
-
-def total(points: Iterable[float]) -> float:
-    """The sum of points without rounding errors."""
-    return round(sum(points, 0.0), 6)

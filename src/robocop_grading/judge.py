@@ -10,7 +10,7 @@ from .checks.verdict import Kind
 from .faults import Faults
 from .grades import CheckOutcome, CheckResult, Grade
 from .plan import CheckPlan, Plan
-from .reasons import with_reasons
+from .reasons import NOT_EXPLAINED, with_reasons
 from .record import Record
 from .texts import sentences
 
@@ -18,7 +18,6 @@ FIRST = "action_server"  # the check without which no other one of a server is r
 ALIVE = "stays_alive"
 NOT_STARTED = "the server did not start"
 NOT_JUDGED = "the grader failed when it judged this"
-NOT_EXPLAINED = "The grader failed when it looked for the cause"
 PROGRAMS = "in a grading, the programs that a node starts find no ROS master; rospy can do the same in the node itself"
 TRUTH = "; the position comes from /odom, as on a real robot"
 
@@ -39,7 +38,8 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         found += [
             f"{part}: {it}" for it in faults.tried(f"the end of the {part}", nothing, _end_of, part, by_name, plan)
         ]
-        said = faults.tried(f"notes about the {part}", nothing, _notes, by_name, plan, checks)
+        own = [check for check in checks if check.part == part]
+        said = faults.tried(f"notes about the {part}", nothing, _notes, by_name, plan, own)
         notes += [f"{part}: {it}" for it in dict.fromkeys(said)]
     return Grade(name, tuple(checks), (*found, *faults.told), tuple(notes), tracebacks=tuple(faults.tracebacks))
 

@@ -3,7 +3,7 @@
 import math
 from dataclasses import MISSING, dataclass, replace
 from pathlib import Path
-from typing import Any, List, Sequence, Tuple
+from typing import Any, Iterable, List, Sequence, Tuple
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
 from aro_robocop_goto_as.param_loading import parameter, several
@@ -20,7 +20,13 @@ MAX_OFFSET = 20.0  # [m] largest coordinate within a scenario
 AGAIN = "_again"  # ends the name of a scenario's repetition with a new node
 START = "start"  # the recording of the node's start; every server has one
 BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "pending")  # fixed, not in the plan's file
+TICK = 0.1  # [s] of a session
 MIDDLE = 0  # the seed with which every range stands for its middle
+
+
+def total(points: Iterable[float]) -> float:
+    """The sum of points without rounding errors."""
+    return round(sum(points, 0.0), 6)
 
 
 def _numbers(count: int) -> Any:
@@ -40,9 +46,13 @@ class Step:
     place: Tuple[float, ...] = _numbers(3)  # x, y [m], yaw [rad] in the odom frame of the scenario's start
 
     def conflicts(self) -> List[str]:
-        """What is wrong, in words, unless there is exactly one thing to do."""
+        """What is wrong, in words, unless there is exactly one thing to do, and to wait for after a goal."""
         things = sum(map(bool, (self.goal, self.cancel, self.place)))
-        return [] if things == 1 else ["expected one of goal, cancel and place in a step"]
+        if things != 1:
+            return ["expected one of goal, cancel and place in a step"]
+        if self.goal and (bool(self.ends) == bool(self.run) or 0.0 < self.run < TICK):
+            return [f"expected `ends`, or `for` of {TICK:g} s or more, after a goal"]
+        return []
 
 
 @dataclass(frozen=True)
@@ -134,12 +144,12 @@ class Plan:
     @property
     def points(self) -> float:
         """The points of all checks that are not extra."""
-        return round(sum(check.points for check in self.checks if not check.extra), 6)
+        return total(check.points for check in self.checks if not check.extra)
 
     @property
     def extra(self) -> float:
         """The points of all checks that are extra."""
-        return round(sum(check.points for check in self.checks if check.extra), 6)
+        return total(check.points for check in self.checks if check.extra)
 
     def examines(self, part: str, scenario: str = "") -> bool:
         """Return whether some check examines this part, or this scenario of it."""

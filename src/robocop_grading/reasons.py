@@ -9,6 +9,7 @@ from .faults import Faults
 from .grades import CheckOutcome, CheckResult
 from .record import Record
 
+NOT_EXPLAINED = "The grader failed when it looked for the cause"
 UNRECORDED = (Kind.NOT_REACHED, Kind.INCOMPLETE)  # a row for any kind does not apply to these
 
 
@@ -21,9 +22,9 @@ def with_reasons(results: List[CheckResult], records: Mapping[str, Record], faul
     causes = {name: without_figures(failure.cause) for name, failure in failures.items()}
     same: Dict[str, str] = {}  # by cause
     for name, cause in causes.items():
-        if first[name] == name:
+        if first[name] == name and NOT_EXPLAINED not in cause:
             same.setdefault(cause, name)
-    begins = {name: same[causes[it]] if it in causes else it for name, it in first.items()}
+    begins = {name: same.get(causes.get(it, ""), it) for name, it in first.items()}
     return [replace(it, follows="" if begins.get(it.name, it.name) == it.name else begins[it.name]) for it in results]
 
 

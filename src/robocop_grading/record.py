@@ -18,6 +18,7 @@ STATUS_NAMES = tuple(
     "PENDING ACTIVE PREEMPTED SUCCEEDED ABORTED REJECTED PREEMPTING RECALLING RECALLED LOST".split()
 )  # actionlib_msgs/GoalStatus
 MAX_TEXT = 2_000  # characters that are kept of a text from the submission
+AT_END = 0.25  # [s] before a result, in which the robot was where its goal ended
 TERMINAL = (PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST)
 
 

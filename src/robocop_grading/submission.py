@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any, Iterator, List, Mapping, Optional, Sequence
 
 from aro_robocop_goto_as.errors import RobocopError
+from aro_robocop_goto_as.names import PACKAGE
 from robocop_hosting import workspace
 from robocop_hosting.errors import HostingError
 from robocop_hosting.launch_file import READER
-from robocop_hosting.package import MAX_NAMED, Package, Started, find_package, started
+from robocop_hosting.package import MAX_NAMED, LaunchPlan, Package, find_package, read_launch_plan
 from robocop_hosting.scripts import (
     BYTE_ORDER_MARK,
     FIRST_LINE,
@@ -36,7 +37,6 @@ from .new import SKELETON, make
 from .sandbox.bubblewrap import Sandbox, expect_private
 from .sandbox.build import build, runner_in
 
-LAB = "aro_robocop_goto_as"
 AGENT = Path(__file__).resolve().parent / "agent"
 CHANNEL = "CHANNEL"  # stands for the argument with which the agent reaches the grader
 
@@ -126,11 +126,11 @@ def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -
     """Single files in `top`, run in place, on top of the skeleton's package."""
     folder = top.parent if top.is_file() else top
     reads = [top, _lab_folder(share, state)]  # `top` may contain helper modules
-    return _ready(top.name, folder, reads, lab_environment(share, state), Started(choices, {}, ()), is_loose=True)
+    return _ready(top.name, folder, reads, lab_environment(share, state), LaunchPlan(choices, {}, ()), is_loose=True)
 
 
 def _ready(
-    name: str, top: Path, reads: Sequence[Path], environment: Environment, found: Started, is_loose: bool = False
+    name: str, top: Path, reads: Sequence[Path], environment: Environment, found: LaunchPlan, is_loose: bool = False
 ) -> Submission:
     scripts = [_script(part, choice, top) for part, choice in found.choices.items()]
     notes = [*found.notes, *_ungraded_bridge(found.choices)]
@@ -144,7 +144,7 @@ def _ready(
 
 def _script(part: str, choice: Choice, top: Path) -> Script:
     node, name = choice.node, str(choice.path.relative_to(top))
-    shown = name if node is None else f"{name}, started by {node.place}"
+    shown = name if node is None else f"{name}, started by {node.location}"
     todo = next_todo(read_text(choice.path))
     return Script(
         part,
@@ -167,19 +167,19 @@ def lab_environment(share: Path, state: Path) -> Environment:
 
     def build_lab() -> Environment:
         with tempfile.TemporaryDirectory() as source:
-            make(Path(source, LAB))
-            return workspace.build({LAB: Path(source, LAB)}, folder, underlay)
+            make(Path(source, PACKAGE))
+            return workspace.build({PACKAGE: Path(source, PACKAGE)}, folder, underlay)
 
     return workspace.build_once(folder, underlay, build_lab)
 
 
 def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
     folder = builds / workspace_name(package.path)
-    below = [] if package.name == LAB else [_lab_folder(share, state)]
+    below = [] if package.name == PACKAGE else [_lab_folder(share, state)]
     underlay = lab_environment(share, state) if below else compat_environment(share, state)
     environment = build(package.sources, folder, underlay, below, sandbox)
     copy = folder / "src" / package.name
-    found = started(package, folder, environment, runner_in(sandbox, folder, [*below, READER]))
+    found = read_launch_plan(package, folder, environment, runner_in(sandbox, folder, [*below, READER]))
     if not found.choices:
         names = [str(path.relative_to(copy)) for path in files_below(copy) if path.suffix == ".py"]
         raise GradingError(

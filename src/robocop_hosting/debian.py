@@ -21,7 +21,9 @@ def remedy(name: str, pattern: str) -> str:
     missing = [it for it in found if f"installed {it}" not in installed]
     if missing:
         return f"install the Debian package: apt-get install {' '.join(missing)}"
-    return f"Debian has no package {name}: build it from source, in a folder beside your package"
+    if found:
+        return f"the Debian package {' and '.join(found)} is installed: is the name right?"
+    return f"apt knows no package of {name}: build it from source, in a folder beside your package"
 
 
 def _lines(*command: str) -> Sequence[str]:

@@ -25,7 +25,7 @@ class LaunchNode:
     package: str
     type: str
     name: str
-    place: str  # file and line
+    location: str  # file and line
     namespace: str = "/"
     arguments: List[str] = field(default_factory=list)  # remappings included
     environment: Mapping[str, str] = field(default_factory=dict)
@@ -80,18 +80,18 @@ def _last_line(errors: str) -> str:
 
 def _failure(values: Mapping[str, Any], name: str, top: Path) -> str:
     """Why roslaunch can't load the file, with the place, which may be in an included file."""
-    words, place = str(values["error"]), _place(str(values["file"] or name), int(values["line"]), top)
+    words, place = str(values["error"]), _location(str(values["file"] or name), int(values["line"]), top)
     included = WHILE.findall(words)
     reason = " ".join(
         re.split(r"\n\s*\w+ xml is|\nXML is|\. Node xml is|\n *ROS path", WHILE.sub("", words))[0].split()
     )
     reason = re.sub(r"^(XmlParse|Load)?Exception: ", "", reason)
     reason = re.sub(r"^ResourceNotFound: (\S+)$", r"package \1 not found", reason)
-    within = f" (in {_place(included[-1], 0, top)})" if included else ""
+    within = f" (in {_location(included[-1], 0, top)})" if included else ""
     return f"{place}: roslaunch can't read it: {reason[:MAX_SHOWN]}{within}"
 
 
-def _place(file: str, line: int, top: Path) -> str:
+def _location(file: str, line: int, top: Path) -> str:
     path = Path(file)
     shown = path.relative_to(top) if top in path.parents else path
     return f"{shown}, line {line}" if line else str(shown)
@@ -99,8 +99,8 @@ def _place(file: str, line: int, top: Path) -> str:
 
 def _node(values: Dict[str, Any], top: Path) -> LaunchNode:
     file, line = values.pop("file"), values.pop("line")
-    node = LaunchNode(place=_place(file, line, top), is_own=top in Path(file).parents, **values)
+    node = LaunchNode(location=_location(file, line, top), is_own=top in Path(file).parents, **values)
     for variable, value in node.environment.items():
         if not VARIABLE.fullmatch(variable) or "\0" in value:
-            raise HostingError(f"{node.place}: <env name={variable[:MAX_SHOWN]!r}>: expected the name of a variable")
+            raise HostingError(f"{node.location}: <env name={variable[:MAX_SHOWN]!r}>: expected the name of a variable")
     return node

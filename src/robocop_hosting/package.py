@@ -20,7 +20,7 @@ NAME = re.compile(r"[A-Za-z0-9][\w-]*", re.ASCII)  # of a package, as catkin tak
 MAX_NAMED = 10  # scripts in a message
 SIMULATOR = "aro_sim"  # the lab's package that starts its simulator ...
 OWN_SIMULATOR = PACKAGE, "robocop_sim.py"  # ... and the node of this package that is started then
-SHOWN_BY = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", SIMULATOR}  # packages that nothing depends on
+VIEWERS = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", SIMULATOR}  # packages that nothing depends on
 GAZEBO = re.compile(r"gazebo(?!_msgs)")
 
 
@@ -32,12 +32,12 @@ class Package:
     path: Path
     launch_file: Optional[Path]  # None: its nodes are started directly
     launch_files: Sequence[Path]  # all of them, this one first
-    needed: Mapping[str, Path]  # packages beside it on which it depends, by name
+    dependencies: Mapping[str, Path]  # packages beside it on which it depends, by name
 
     @property
     def sources(self) -> Dict[str, Path]:
         """The packages to be built, by name."""
-        return {self.name: self.path, **self.needed}
+        return {self.name: self.path, **self.dependencies}
 
 
 def arguments_of(launch_file: Optional[Path]) -> List[str]:
@@ -164,7 +164,7 @@ def _launch_file(folder: Path, wanted: str) -> Tuple[Optional[Path], List[Path]]
 
 
 @dataclass(frozen=True)
-class Started:
+class LaunchPlan:
     """What roslaunch would start of a package, by part; the parameters it would set; what the grader does not do."""
 
     choices: Mapping[str, Choice]
@@ -183,7 +183,7 @@ class Started:
         return any(GAZEBO.search(node.package) for node in self.others)
 
 
-def names_gazebo(package: Package, problem: str) -> bool:
+def mentions_gazebo(package: Package, problem: str) -> bool:
     """Return whether a launch file that can't be read starts Gazebo: the package's own, or one that `problem` names.
 
     The package that `problem` misses may be another one that comes with Gazebo, such as xacro.
@@ -197,9 +197,9 @@ def names_gazebo(package: Package, problem: str) -> bool:
     return False
 
 
-def started(
+def read_launch_plan(
     package: Package, folder: Path, environment: Environment, run: Run, arguments: Sequence[str] = ()
-) -> Started:
+) -> LaunchPlan:
     """Read the launch files of a package that is built in the workspace at `folder`: the package's own one, then others
     until server and bridge are found. `arguments`: NAME:=VALUE, for the first. HostingError says what is wrong.
     """
@@ -227,7 +227,7 @@ def started(
             notes += [*file.warnings, *_not_done(package, file.nodes, choices, names)]
         if all(part in choices and choices[part].node is not None for part in PARTS.values()):
             break
-    return Started(choose(copy, nodes, relays), parameters, notes, others)
+    return LaunchPlan(choose(copy, nodes, relays), parameters, notes, others)
 
 
 def _not_done(
@@ -237,13 +237,13 @@ def _not_done(
     graded = [choice.node for choice in choices.values()]
     for node in (node for node in nodes if node.is_own):
         if node.package == package.name and node.type not in names:
-            yield f"{node.place}: roslaunch finds no {node.type} in this package"
-        elif node not in graded and node.package not in SHOWN_BY:
+            yield f"{node.location}: roslaunch finds no {node.type} in this package"
+        elif node not in graded and node.package not in VIEWERS:
             yield (
-                f"{node.place}: node {node.name} ({node.package} {node.type}) is not started: server and bridge are "
+                f"{node.location}: node {node.name} ({node.package} {node.type}) is not started: server and bridge are "
                 "graded one at a time, each alone"
             )
         elif node in graded and node.package != package.name:
-            yield f"{node.place}: pkg={node.package!r} is not this package, whose name is {package.name!r}"
+            yield f"{node.location}: pkg={node.package!r} is not this package, whose name is {package.name!r}"
         for attribute in node.not_done if node in graded else ():
-            yield f"{node.place}: {attribute} has no effect in a grading"
+            yield f"{node.location}: {attribute} has no effect in a grading"

@@ -52,7 +52,7 @@ class _Doubts(NamedTuple):
     is_aside: bool  # a copy, a backup, a test
     has_another_name: bool  # than the handout's
     is_module: bool  # it makes no node
-    only_imports: bool  # one of the modules that it imports is the part
+    is_not_by_content: bool  # its name, or a module that it imports, is the part's
     may_be_another: bool  # the client of another action
     is_not_installed: bool  # by catkin_install_python
     is_not_executable: bool

@@ -18,7 +18,7 @@ from aro_robocop_goto_as.process.start import typed
 from . import debian
 from .errors import HostingError
 from .node_errors import NodeErrors
-from .package import GAZEBO, Package, Started, arguments_of, find_package, names_gazebo, started
+from .package import GAZEBO, LaunchPlan, Package, arguments_of, find_package, mentions_gazebo, read_launch_plan
 from .scratch import scratch_folder
 from .scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, start_problems
 from .workspace import Environment, build, compat_environment, places, run_plain, workspace_name
@@ -27,12 +27,12 @@ NOT_FOUND = re.compile(r'(?:configuration file provided by "|Could NOT find )(\w
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
 
-def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) -> Tuple[Path, Environment, Started]:
+def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) -> Tuple[Path, Environment, LaunchPlan]:
     """Build a package in `state`/with/...; return that folder, its environment, and what its launch file starts.
 
     HostingError if roslaunch can't start one of its scripts, with the reason.
     """
-    folder = own_folder(state / "with", workspace_name(package.path))
+    folder = lock_free_folder(state / "with", workspace_name(package.path))
     underlay = compat_environment(share, state)
     try:
         environment = build(package.sources, folder, underlay)
@@ -44,9 +44,9 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
         raise HostingError(f"{package.name} can't be built: {lacks} (full log: {folder}/build.log)") from error
     words = [f"{name}:={value}" for name, value in arguments.items()]
     try:
-        found = started(package, folder, environment, run_plain, words)
+        found = read_launch_plan(package, folder, environment, run_plain, words)
     except HostingError as error:
-        if names_gazebo(package, str(error)):
+        if mentions_gazebo(package, str(error)):
             raise HostingError(f"{error}. {instead_of_gazebo(package)}") from error
         raise
     if found.starts_gazebo:
@@ -54,24 +54,24 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
     for node in found.others:
         if not (node.is_found or GAZEBO.search(node.package)):
             hint = debian.remedy(node.package, "(ros-|python3-)?{}(-tools)?")
-            _tell(f"{node.place}: there is no {node.type} of the package {node.package} on this machine; {hint}")
+            _tell(f"{node.location}: there is no {node.type} of the package {node.package} on this machine; {hint}")
     for choice in found.choices.values():
         if not choice.is_installed and (choice.node is not None or package.launch_file is None):
             make_startable(choice, folder / "src")
     return folder, {**environment, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}, found
 
 
-def own_folder(parent: Path, name: str) -> Path:
+def lock_free_folder(parent: Path, name: str) -> Path:
     """The first of NAME, NAME-1, ... in which no other `sim --with` builds or runs; this process keeps its lock."""
     parent.mkdir(parents=True, exist_ok=True)
     folder, number = parent / name, 0
-    while not _is_locked_now(folder):
+    while not _try_lock(folder):
         number += 1
         folder = parent / f"{name}-{number}"
     return folder
 
 
-def _is_locked_now(folder: Path) -> bool:
+def _try_lock(folder: Path) -> bool:
     """Try to lock a folder, by a file beside it, until this process ends; return whether that succeeded."""
     lock = os.open(folder.with_name(f"{folder.name}.lock"), os.O_CREAT | os.O_WRONLY)
     try:
@@ -114,7 +114,7 @@ def _tell(words: str) -> None:
     print(f"robocop sim: {words}", file=sys.stderr, flush=True)
 
 
-def launch_file(package: Package, folder: Path, arguments: Dict[str, str], found: Started) -> Path:
+def write_launch_file(package: Package, folder: Path, arguments: Dict[str, str], found: LaunchPlan) -> Path:
     """Write a launch file into `folder` that starts the package and, unless the package does so, the simulator."""
     parts = []
     if not found.starts_simulator:
@@ -135,7 +135,10 @@ def launch_file(package: Package, folder: Path, arguments: Dict[str, str], found
 
 
 def sort_arguments(package: Package, words: List[str], simulator: List[str]) -> Tuple[Dict[str, str], str]:
-    """The NAME:=VALUE words for the package's launch file, and those for the simulator, which knows `simulator`."""
+    """The NAME:=VALUE words for the package's launch file, and those for the simulator, which knows `simulator`.
+
+    rviz:=... goes into the environment, for aro_sim, if the launch file has no such argument.
+    """
     known = arguments_of(package.launch_file)
     for_package: Dict[str, str] = {}
     for_simulator: List[str] = []
@@ -184,7 +187,7 @@ def main() -> None:
         print(f"robocop sim: building {package.name} from {shown}", flush=True)
         with scratch_folder():
             folder, environment, found = host(package, share, state, for_package)
-        path = launch_file(package, folder, for_package, found)
+        path = write_launch_file(package, folder, for_package, found)
     except RobocopError as error:
         print(f"robocop sim: {error}", file=sys.stderr)
         sys.exit(1)

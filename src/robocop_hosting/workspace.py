@@ -80,14 +80,20 @@ def copy_sources(
     follow_links: bool = True,
     copy: Callable[[str, str], object] = shutil.copy2,
 ) -> None:
-    """Replace the sources of the workspace at `folder` by copies of packages (name -> folder)."""
+    """Replace the sources of the workspace at `folder` by copies of packages (name -> folder).
+
+    HostingError if they can't be copied; links that lead nowhere are left out.
+    """
     source = folder / "src"
     tree.remove(source)
     source.mkdir(parents=True)
     for name, path in sources.items():
         for _ in tree.walk(path, LEFT_OUT):  # copytree calls itself for each level
             pass
-        shutil.copytree(path, source / name, symlinks=not follow_links, ignore=NOT_COPIED, copy_function=copy)
+        try:
+            shutil.copytree(path, source / name, not follow_links, NOT_COPIED, copy, ignore_dangling_symlinks=True)
+        except OSError as error:  # shutil.Error is one
+            raise HostingError(f"{path}: can't be copied: {error}") from error
         for inner, _, _ in tree.walk(source / name):
             os.chmod(inner, os.stat(inner).st_mode | 0o700)  # a copy of a read-only folder can't be removed
 

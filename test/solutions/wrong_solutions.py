@@ -306,7 +306,7 @@ WRONG: Tuple[Wrong, ...] = (
     _server(
         "done_never_cleared",
         "next_goal",
-        "not reset when a goal begins",
+        "not reset when a new goal begins",
         (BEGIN, "        success = self.count > 0\n        while"),
         ("while not rospy.is_shutdown():", "while not rospy.is_shutdown() and not self.count:"),
         (END, "        self.count = 1\n        self.stop()\n        result ="),

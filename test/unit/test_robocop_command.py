@@ -335,6 +335,16 @@ def test_a_build_takes_the_workspace_away_from_nothing_that_runs(quick, user):
     assert quick("clean").returncode == 0 and not state.exists()
 
 
+def test_run_is_no_obstacle_to_its_own_set_up(quick, checkout):
+    root = checkout.parent / "quick"
+    shutil.copytree(ROOT / "launch", root / "launch")
+    (root / "install" / "deb-packages" / "web.txt").write_text("bash\n")
+    for packages in ("one==1", "two==2"):
+        (root / "install" / "requirements-web.txt").write_text(f"{packages}\n")
+        done = quick("run", "web:=true", "rviz:=false", ROS_MASTER_URI=f"http://localhost:{free_port()}")
+        assert (done.returncode, done.stderr.count("requirements-web.txt")) == (0, 1), done.stderr
+
+
 def test_packages_are_replaced_when_nothing_runs_that_uses_them(quick, user, checkout):
     root = user.workspace.parent.parent
     (root / "install" / "requirements.txt").write_text("another==1\n")

@@ -4,6 +4,7 @@ import contextlib
 import math
 import os
 import re
+import sys
 import time
 from typing import List, NoReturn, Sequence, Tuple
 
@@ -58,7 +59,8 @@ def run(arguments: List[str]) -> None:
         require_settings()
     else:
         refuse_second_simulator()
-    program.need()  # also what finds out whether the display answers
+    if not program.set_up():  # also what finds out whether the display answers
+        sys.exit(1)
     parts = [part for part in ("gui", "web", "rviz") if given.is_true(part)]
     words = []
     if not given.value("rviz"):
@@ -73,8 +75,7 @@ def run(arguments: List[str]) -> None:
             words.append("web:=true")
         else:
             say("no usable display; RViz is not started, and the web page could not be installed")
-    if parts:
-        program.need(*parts)
+    program.need(*parts)  # at the end: from now on, no set-up takes the workspace away
     launch(given, *words)
 
 
@@ -160,21 +161,26 @@ def _require_number(text: str, lowest: float, expected: str) -> None:
     refuse(f"replay: {expected}, got {text or 'nothing'}")
 
 
-def _require_bag(path: str) -> None:
-    """End with an error for a file that rosbag can't play; the format is that of wiki.ros.org/Bags/Format/2.0."""
+def _index_of(path: str) -> int:
+    """Where a bag's index begins; ends with an error for a file that rosbag can't play.
+
+    The format is that of wiki.ros.org/Bags/Format/2.0.
+    """
     with open(path, "rb") as file:
         head = file.read(BAG_HEAD)
     index = head.partition(b"index_pos=")[2][:8]  # 0 while it is being recorded
     if not head.startswith(BAG_VERSION) or not index:
         refuse(f"replay: {path} is no bag of ROS 1; expected a bag of ./robocop record or of a report")
-    if not 0 < int.from_bytes(index, "little") <= os.path.getsize(path):
+    position = int.from_bytes(index, "little")
+    if not 0 < position <= os.path.getsize(path):
         refuse(f"replay: {path} is not complete; this repairs what is there: ./robocop shell rosbag reindex {path}")
+    return position
 
 
-def _duration(path: str) -> float:
-    """How long a bag plays [s]: from the first to the last of its chunks, whose times follow the index position."""
+def _duration(path: str, index_position: int) -> float:
+    """How long a bag plays [s]: from the first to the last of its chunks, whose times are in its index."""
     with open(path, "rb") as file:
-        file.seek(int.from_bytes(file.read(BAG_HEAD).partition(b"index_pos=")[2][:8], "little"))
+        file.seek(index_position)
         index = file.read()
     # A field of a record's header: its length, its name, seconds and nanoseconds.
     times = re.findall(rb"(?s)(?:\x13\0\0\0start|\x11\0\0\0end)_time=(.{4})(.{4})", index)
@@ -187,16 +193,15 @@ def replay(arguments: List[str]) -> None:
     bag = arguments[0] if arguments else ""
     if not (program.is_dry_run() and bag) and not os.path.isfile(bag):
         refuse(f"replay: expected a bag of ./robocop record or of a report, got '{bag}'")
-    if not program.is_dry_run():
-        _require_bag(bag)
+    duration = math.inf if program.is_dry_run() else _duration(bag, _index_of(bag))
     rest, option, after = _split_at(arguments[1:], "--start")
     if option:
         rest += [f"start:={''.join(after[:1])}", *after[1:]]
     given = LaunchArguments.parse(REPLAY, rest, "--start")
     if option or given.value("start"):
         _require_number(given.value("start"), 0.0, "--start: expected seconds after the recording's beginning")
-        if not program.is_dry_run() and float(given.value("start")) > _duration(bag):
-            refuse(f"replay: --start {given.value('start')}: {bag} ends {_duration(bag):.1f} s after its beginning")
+        if float(given.value("start")) > duration:
+            refuse(f"replay: --start {given.value('start')}: {bag} ends {duration:.1f} s after its beginning")
     if given.value("rate"):
         _require_number(given.value("rate"), MIN_RATE, f"rate: expected a number from {MIN_RATE:g} on")
     shown = x_display.answers()

@@ -23,8 +23,8 @@ def clearance_ahead(
     handout's rule. -inf means "too near to measure" (REP-117) and counts as 0. Any other number and +inf mean that
     there is nothing to return the beam: the drivers of the LDS-01 and LDS-02 send 0 where REP-117 asks for +inf. So a
     scanner that sends only zeros can't be told from one in an open space.
-    None when no beam points ahead, or when the beams that do can't be told: angles are NaN or infinite, several beams
-    have one direction, or the beams go round more than one and a half times, as angles in degrees would. NaN when no
+    None if no beam points ahead, or if the angles do not tell which beams do: they are NaN or infinite, several beams
+    have one direction, or the beams go round more than one and a half times, as angles in degrees would. NaN if no
     beam ahead is valid: all of them are NaN (REP-117), or the range limits are NaN or not in order, so that no return
     could count.
     """

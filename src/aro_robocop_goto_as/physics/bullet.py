@@ -184,7 +184,8 @@ class BulletEngine:
         """Put a standing robot to sleep.
 
         Otherwise the solver's residual moves a standing Burger by 6.6 mm per minute (with 50 iterations).
-        Bullet wakes the robot when a moving body touches it; `_set_motors` wakes it for a command.
+        Bullet wakes the robot when another robot touches it; move_obstacles() wakes it for moving obstacles, which are
+        teleported, and `_set_motors` for a command.
         """
         linear, angular = pybullet.getBaseVelocity(robot.body, physicsClientId=self.client)
         still = all(abs(v) < REST_LINEAR for v in linear) and all(abs(w) < REST_ANGULAR for w in angular)

@@ -49,7 +49,8 @@ def occupant(world: World, pose: Pose2D, model: RobotModel) -> str:
 
 
 def free_place(world: World, around: Pose2D, model: RobotModel) -> Pose2D:
-    """The pose itself if a robot's footprint has room there, else the nearest pose of a grid with room, of equal yaw.
+    """The pose itself if a robot's footprint has room there; else, of equal yaw, the nearest pose of a grid that is
+    CLEARANCE away from all obstacles, or, if there is none, the nearest one where the footprint has room.
 
     In the world of a map, the grid is laid around the free cell nearest to the pose. ParameterError if there is none.
     """

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Mapping
 
 from ..param_loading import parameter
-from .sensor import RateParams, Robots, Sensor, Site
+from .sensor import RateParams, RobotIndices, Sensor, SensorContext
 
 BUMPER = "bumper"
 
@@ -21,10 +21,10 @@ class Bumper(Sensor):
 
     topic = BUMPER
 
-    def __init__(self, params: BumperParams, site: Site) -> None:
-        super().__init__(site, params.bumper_rate)
+    def __init__(self, params: BumperParams, context: SensorContext) -> None:
+        super().__init__(context, params.bumper_rate)
         self.touching: Mapping[int, bool] = {}
 
-    def measure(self, robots: Robots) -> None:
+    def measure(self, robots: RobotIndices) -> None:
         """Read these robots' bumpers."""
-        self.touching = {robot: self.site.engine.touching(robot) for robot in robots}
+        self.touching = {robot: self.context.engine.touching(robot) for robot in robots}

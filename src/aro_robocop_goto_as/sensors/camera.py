@@ -6,7 +6,7 @@ from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
 from ..geometry import compose3
 from ..param_loading import PROFILES_OWN, parameter, positive
 from .camera_image import CameraImage, CameraSpec
-from .sensor import RateParams, Robots, Sensor, Site
+from .sensor import RateParams, RobotIndices, Sensor, SensorContext
 
 CAMERA = "camera"
 
@@ -53,10 +53,10 @@ class Camera(Sensor):
 
     topic = CAMERA
 
-    def __init__(self, params: CameraParams, site: Site) -> None:
-        super().__init__(site, params.camera_rate)
+    def __init__(self, params: CameraParams, context: SensorContext) -> None:
+        super().__init__(context, params.camera_rate)
         self.specs: Sequence[Optional[CameraSpec]] = [
-            None if model.base_from_camera is None else params.spec(model.name) for model in site.models
+            None if model.base_from_camera is None else params.spec(model.name) for model in context.models
         ]
         self.images: Mapping[int, CameraImage] = {}
         self._make_renderer: Any = None
@@ -66,16 +66,16 @@ class Camera(Sensor):
             self._make_renderer = CameraRenderer
         self._renderer: Any = None  # a CameraRenderer of the present world, made for the first image
 
-    def measure(self, robots: Robots) -> None:
+    def measure(self, robots: RobotIndices) -> None:
         """Take images with these robots' cameras."""
-        site, images = self.site, {}
-        bases = [site.engine.body(robot).world_from_base for robot in range(len(site.models))]
+        context, images = self.context, {}
+        bases = [context.engine.body(robot).world_from_base for robot in range(len(context.models))]
         for robot in robots:
-            spec, base_from_camera = self.specs[robot], site.models[robot].base_from_camera
+            spec, base_from_camera = self.specs[robot], context.models[robot].base_from_camera
             if spec is not None and base_from_camera is not None:
-                self._renderer = self._renderer or self._make_renderer(site.world, site.models)
+                self._renderer = self._renderer or self._make_renderer(context.world, context.models)
                 world_from_camera = compose3(bases[robot], base_from_camera)
-                images[robot] = self._renderer.render(spec, world_from_camera, robot, bases, site.time)
+                images[robot] = self._renderer.render(spec, world_from_camera, robot, bases, context.time)
         self.images = images
 
     def close(self) -> None:

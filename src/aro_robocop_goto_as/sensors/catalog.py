@@ -11,7 +11,7 @@ from .imu import Imu, ImuParams
 from .lidar import Lidar
 from .lidar_profiles import LidarParams
 from .odometry import JointEncoders, OdometryParams, WheelOdometry
-from .sensor import Sensor, Site
+from .sensor import Sensor, SensorContext
 from .sonar import Sonar, SonarParams
 
 
@@ -36,15 +36,15 @@ class SensorParams:
 class Sensors:
     """The sensors of one simulation: attributes that are sensors, in the order in which they measure and publish."""
 
-    def __init__(self, params: SensorParams, site: Site, follows_truth: bool) -> None:
+    def __init__(self, params: SensorParams, context: SensorContext, follows_truth: bool) -> None:
         """`follows_truth`: whether map -> odom is corrected with each odometry."""
-        odometry = WheelOdometry(params.odometry, site, follows_truth)
-        self.bumper = Bumper(params.bumper, site)
-        self.camera = Camera(params.camera, site)
-        self.ground_truth = GroundTruth(params.ground_truth, site)
-        self.imu = Imu(params.imu, site)
-        self.joints = JointEncoders(params.odometry, site, odometry)
+        odometry = WheelOdometry(params.odometry, context, follows_truth)
+        self.bumper = Bumper(params.bumper, context)
+        self.camera = Camera(params.camera, context)
+        self.ground_truth = GroundTruth(params.ground_truth, context)
+        self.imu = Imu(params.imu, context)
+        self.joints = JointEncoders(params.odometry, context, odometry)
         self.odometry = odometry
-        self.lidar = Lidar(params.lidar, site)
-        self.sonar = Sonar(params.sonar, site)
+        self.lidar = Lidar(params.lidar, context)
+        self.sonar = Sonar(params.sonar, context)
         self.by_topic: Dict[str, Sensor] = {sensor.topic: sensor for sensor in vars(self).values()}

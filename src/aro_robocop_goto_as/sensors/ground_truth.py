@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ..param_loading import parameter
-from .sensor import Prepared, RateParams, Robots, Sensor, Site
+from .sensor import MeasurementCalls, RateParams, RobotIndices, Sensor, SensorContext
 
 GROUND_TRUTH = "ground_truth_odom"
 
@@ -21,10 +21,10 @@ class GroundTruth(Sensor):
 
     topic = GROUND_TRUTH
 
-    def __init__(self, params: TruthParams, site: Site) -> None:
-        super().__init__(site, params.ground_truth_rate if params.ground_truth else 0)
-        self.poses, self.twists = site.fleet.poses, site.fleet.twists
+    def __init__(self, params: TruthParams, context: SensorContext) -> None:
+        super().__init__(context, params.ground_truth_rate if params.ground_truth else 0)
+        self.poses, self.twists = context.fleet.poses, context.fleet.twists
 
-    def prepared(self, _robots: Robots) -> Prepared:
+    def measurement_calls(self, _robots: RobotIndices) -> MeasurementCalls:
         """Nothing to do: the fleet's rows are up to date."""
-        return Prepared([])
+        return MeasurementCalls([])

@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry import STANDARD_GRAVITY, Pose3D, compose3, rotation_matrix
 from ..param_loading import parameter
 from ..robot.model import BodyState
-from .sensor import Prepared, RateParams, Robots, Sensor, Site
+from .sensor import MeasurementCalls, RateParams, RobotIndices, Sensor, SensorContext
 
 IMU = "imu"
 FIRST_STREAM = 1  # of the noise of the first robot's IMU, the next one's is 2, ...; see sensor.py
@@ -62,22 +62,22 @@ class Imu(Sensor):
 
     topic = IMU
 
-    def __init__(self, params: ImuParams, site: Site) -> None:
-        super().__init__(site, params.imu_rate)
-        self.params, self.samples = params, np.zeros((len(site.fleet), 10))
+    def __init__(self, params: ImuParams, context: SensorContext) -> None:
+        super().__init__(context, params.imu_rate)
+        self.params, self.samples = params, np.zeros((len(context.fleet), 10))
         self._before: Dict[int, BodyState] = {}
 
-    def prepared(self, robots: Robots) -> Prepared:
+    def measurement_calls(self, robots: RobotIndices) -> MeasurementCalls:
         """Compare these robots' states before and after the step."""
-        return Prepared([partial(self.measure, robots)], before=[partial(self._keep, robots)])
+        return MeasurementCalls([partial(self.measure, robots)], before=[partial(self._keep, robots)])
 
-    def _keep(self, robots: Robots) -> None:
-        self._before = {robot: self.site.engine.body(robot) for robot in robots}
+    def _keep(self, robots: RobotIndices) -> None:
+        self._before = {robot: self.context.engine.body(robot) for robot in robots}
 
-    def measure(self, robots: Robots) -> None:
+    def measure(self, robots: RobotIndices) -> None:
         """Measure these robots' IMUs over the step."""
-        site = self.site
+        context = self.context
         for robot in robots:
-            before, after, mount = self._before[robot], site.engine.body(robot), site.models[robot].base_from_imu
-            noise = site.noise.stream(FIRST_STREAM + robot)
-            self.samples[robot] = measure(before, after, 1.0 / site.rate, mount, self.params, noise)
+            before, after, mount = self._before[robot], context.engine.body(robot), context.models[robot].base_from_imu
+            noise = context.noise.stream(FIRST_STREAM + robot)
+            self.samples[robot] = measure(before, after, 1.0 / context.rate, mount, self.params, noise)

@@ -11,7 +11,7 @@ from ..compiled import address, members
 from ..raycast.beams import Beams
 from ..raycast.caster_library import load
 from .lidar_profiles import LidarParams, LidarProfile
-from .sensor import Episode, Prepared, Robots, Sensor, Site
+from .sensor import Episode, MeasurementCalls, RobotIndices, Sensor, SensorContext
 
 SCAN = "scan"
 
@@ -66,19 +66,21 @@ class Lidar(Sensor):
 
     topic = SCAN
 
-    def __init__(self, params: LidarParams, site: Site) -> None:
+    def __init__(self, params: LidarParams, context: SensorContext) -> None:
         self.profile = params.profile()
-        super().__init__(site, self.profile.rate)
-        self.ranges = np.zeros((len(site.fleet), self.profile.samples))
+        super().__init__(context, self.profile.rate)
+        self.ranges = np.zeros((len(context.fleet), self.profile.samples))
         self._beams = Beams(self.profile.angle_min, self.profile.increment, self.profile.samples)
-        self._mounts = tuple(model.base_from_scan for model in site.models)
+        self._mounts = tuple(model.base_from_scan for model in context.models)
         self._errors = RangeErrors(self.profile)
 
-    def prepared(self, robots: Robots) -> Prepared:
+    def measurement_calls(self, robots: RobotIndices) -> MeasurementCalls:
         """Scan with these robots' lidars."""
-        cast = self._beams.casting(self.site.sections.scene(self._mounts), robots, self.profile.range_max, self.ranges)
-        return Prepared([cast, self._errors.adding(robots, self.site.episode, self.ranges)])
+        cast = self._beams.casting(
+            self.context.sections.scene(self._mounts), robots, self.profile.range_max, self.ranges
+        )
+        return MeasurementCalls([cast, self._errors.adding(robots, self.context.episode, self.ranges)])
 
     def exact_distances(self, robot: int) -> np.ndarray:
         """What a lidar would measure now without noise and range_min: (samples,) [m]; no return = +inf."""
-        return self._beams.scan(self.site.sections.scene(self._mounts), [robot], self.profile.range_max)[0]
+        return self._beams.scan(self.context.sections.scene(self._mounts), [robot], self.profile.range_max)[0]

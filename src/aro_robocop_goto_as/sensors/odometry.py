@@ -11,7 +11,7 @@ from ..compiled import address, members
 from ..geometry import Pose2D, compose, inverse
 from ..param_loading import parameter
 from ..robot.fleet import library
-from .sensor import Prepared, RateParams, Robots, Sensor, Site
+from .sensor import MeasurementCalls, RateParams, RobotIndices, Sensor, SensorContext
 
 ODOM, JOINTS = "odom", "joint_states"
 SLIP_STREAM = 2**32  # of the noise of all encoders; see sensor.py
@@ -61,15 +61,15 @@ class WheelOdometry(Sensor):
     topic = ODOM
     always_on = True  # it integrates: no update may be left out
 
-    def __init__(self, params: OdometryParams, site: Site, follows_truth: bool = False) -> None:
+    def __init__(self, params: OdometryParams, context: SensorContext, follows_truth: bool = False) -> None:
         """`follows_truth`: whether map_from_odom is corrected with each measurement."""
-        n = len(site.fleet)
-        super().__init__(site, params.odom_rate)
-        self._fleet, self._follows_truth = site.fleet, follows_truth
+        n = len(context.fleet)
+        super().__init__(context, params.odom_rate)
+        self._fleet, self._follows_truth = context.fleet, follows_truth
         self.in_world = params.odom_source == "world"
         self._slips = params.odom_slip > 0.0 and not self.in_world
         self._tick = params.encoder_tick
-        self._wheels = site.fleet.wheels * [1.0 + params.odom_wheel_radius_error, 1.0]
+        self._wheels = context.fleet.wheels * [1.0 + params.odom_wheel_radius_error, 1.0]
         self.poses, self.twists, self.map_from_odom = np.zeros((n, 3)), np.zeros((n, 2)), np.zeros((n, 3))
         self._read = np.zeros((n, 2))  # encoder angles [rad] at the latest update, in whole ticks
         self._counted, self._rolled = np.zeros((n, 2)), np.zeros((n, 2))  # wheel angles with slip, and true ones [rad]
@@ -87,13 +87,17 @@ class WheelOdometry(Sensor):
         self._noise = np.zeros((n, 2))  # standard normal, of the next update if wheels slip
         self.update: Callable[[], object] = self._copy
         if not self.in_world:
-            rows = ctypes.addressof(self._struct), site.fleet.struct.wheel_angles, address("noise", self._noise, (n, 2))
+            rows = (
+                ctypes.addressof(self._struct),
+                context.fleet.struct.wheel_angles,
+                address("noise", self._noise, (n, 2)),
+            )
             self.update = partial(library().aro_odometry, *rows, 1.0 / params.odom_rate)
 
-    def prepared(self, _robots: Robots) -> Prepared:
+    def measurement_calls(self, _robots: RobotIndices) -> MeasurementCalls:
         """Update the odometry of all robots."""
         slip, follow = [self._draw_slip] * self._slips, [self._follow_truth] * self._follows_truth
-        return Prepared([*slip, self.update, *follow])
+        return MeasurementCalls([*slip, self.update, *follow])
 
     def reset(self, spawns: Sequence[Pose2D]) -> None:
         """Start at zero, or at the true poses, at the wheels' present angles."""
@@ -110,7 +114,7 @@ class WheelOdometry(Sensor):
         return np.floor(angles / self._tick) * self._tick if self._tick else angles
 
     def _draw_slip(self) -> None:
-        self.site.noise.stream(SLIP_STREAM).standard_normal(out=self._noise)
+        self.context.noise.stream(SLIP_STREAM).standard_normal(out=self._noise)
 
     def _copy(self) -> None:
         self.poses[:], self.twists[:] = self._fleet.poses, self._fleet.twists
@@ -136,10 +140,11 @@ class JointEncoders(Sensor):
 
     topic = JOINTS
 
-    def __init__(self, params: OdometryParams, site: Site, odometry: WheelOdometry) -> None:
-        super().__init__(site, params.joint_state_rate)
-        self.angles, self.speeds, self._odometry = np.zeros((len(site.fleet), 2)), site.fleet.wheel_speeds, odometry
+    def __init__(self, params: OdometryParams, context: SensorContext, odometry: WheelOdometry) -> None:
+        super().__init__(context, params.joint_state_rate)
+        self.angles, self.speeds = np.zeros((len(context.fleet), 2)), context.fleet.wheel_speeds
+        self._odometry = odometry
 
-    def measure(self, _robots: Robots) -> None:
+    def measure(self, _robots: RobotIndices) -> None:
         """Read the joints of all robots."""
         self.angles[:] = self._odometry.joint_angles()

@@ -16,7 +16,7 @@ from ..physics.engine import Engine
 from ..raycast.sections import Mounts, Sections
 from ..world.model import World
 
-Robots = Sequence[int]  # indices
+RobotIndices = Sequence[int]  # indices
 Calls = Sequence[Callable[[], object]]
 
 
@@ -55,7 +55,7 @@ class NoiseStreams:
         return self._generator
 
 
-class Site:
+class SensorContext:
     """Robots in a world, where sensors measure, and the noise of the present step."""
 
     def __init__(self, world: World, engine: Engine, rate: int, seed: int) -> None:
@@ -92,7 +92,7 @@ class RateParams:
         return {name: value for name, value in vars(self).items() if name.endswith("_rate")}
 
 
-class Prepared(NamedTuple):
+class MeasurementCalls(NamedTuple):
     """The calls that measure some robots, made once for all steps that are alike."""
 
     measure: Calls  # after the step
@@ -103,7 +103,7 @@ class Sensor:
     """A sensor that every robot has; of its arrays, each robot's row is changed in place when the sensor is due.
 
     An ordinary sensor overrides measure(). A sensor that C measures, or that also looks at the robots before the step,
-    overrides prepared() instead.
+    overrides measurement_calls() instead.
     """
 
     topic = ""  # in the robot's namespace; sensors are called by it
@@ -111,16 +111,16 @@ class Sensor:
     frame = ""  # of its own, if the robots' URDF has none for it
     mounts: Mounts = ()  # base_from_sensor of each robot, where the sensor has a frame of its own
 
-    def __init__(self, site: Site, rate: int) -> None:
+    def __init__(self, context: SensorContext, rate: int) -> None:
         """`rate` [Hz]; 0: never."""
-        self.site, self.rate = site, rate
+        self.context, self.rate = context, rate
 
-    def measure(self, robots: Robots) -> None:
+    def measure(self, robots: RobotIndices) -> None:
         """Measure these robots."""
 
-    def prepared(self, robots: Robots) -> Prepared:
+    def measurement_calls(self, robots: RobotIndices) -> MeasurementCalls:
         """The calls that measure these robots, with the fleet's rows up to date; anew after a change of the world."""
-        return Prepared([partial(self.measure, robots)])
+        return MeasurementCalls([partial(self.measure, robots)])
 
     def reset(self, _spawns: Sequence[Pose2D]) -> None:
         """Begin anew: the robots are at their spawn poses."""

@@ -17,7 +17,7 @@ from ..param_loading import parameter
 from ..raycast.beams import Beams
 from ..robot.model import RobotModel
 from ..shapes import Box, Cylinder
-from .sensor import Prepared, RateParams, Robots, Sensor, Site
+from .sensor import MeasurementCalls, RateParams, RobotIndices, Sensor, SensorContext
 
 SONAR = "sonar"
 HEIGHT = 0.05  # [m] above the floor
@@ -59,23 +59,23 @@ class Sonar(Sensor):
     radiation_type = 0  # sensor_msgs/Range: ULTRASOUND
     first_stream = 2**33  # of the noise of the first robot's sonar, the next one's is one more; see sensor.py
 
-    def __init__(self, params: SonarParams, site: Site) -> None:
-        super().__init__(site, params.sonar_rate if params.sonar else 0)
-        self.mounts = tuple(mount(model) for model in site.models)
-        self.ranges = np.zeros((len(site.fleet), 1))
+    def __init__(self, params: SonarParams, context: SensorContext) -> None:
+        super().__init__(context, params.sonar_rate if params.sonar else 0)
+        self.mounts = tuple(mount(model) for model in context.models)
+        self.ranges = np.zeros((len(context.fleet), 1))
         self._noise = params.sonar_noise
         self._beams = Beams(-self.angle / 2.0, self.angle / (BEAMS - 1), BEAMS)
-        self._distances = np.zeros((len(site.fleet), BEAMS))
+        self._distances = np.zeros((len(context.fleet), BEAMS))
 
-    def prepared(self, robots: Robots) -> Prepared:
+    def measurement_calls(self, robots: RobotIndices) -> MeasurementCalls:
         """Cast these robots' beams, and take the nearest return of each robot."""
-        cast = self._beams.casting(self.site.sections.scene(self.mounts), robots, self.range_max, self._distances)
-        return Prepared([cast, partial(self.measure, robots)])
+        cast = self._beams.casting(self.context.sections.scene(self.mounts), robots, self.range_max, self._distances)
+        return MeasurementCalls([cast, partial(self.measure, robots)])
 
-    def measure(self, robots: Robots) -> None:
+    def measure(self, robots: RobotIndices) -> None:
         """Turn the distances along these robots' beams into ranges."""
         for robot in robots:
-            noise = self.site.noise.stream(self.first_stream + robot).normal(0.0, self._noise)
+            noise = self.context.noise.stream(self.first_stream + robot).normal(0.0, self._noise)
             distance = self._distances[robot].min() + noise
             is_near, is_far = distance < self.range_min, distance > self.range_max
             self.ranges[robot] = -math.inf if is_near else math.inf if is_far else distance

@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 from typing import Dict, Mapping, Tuple
 
 from ..sensors.catalog import Sensors
-from ..sensors.sensor import Prepared, Robots, Site
+from ..sensors.sensor import MeasurementCalls, RobotIndices, SensorContext
 from .params import Rates
 from .schedule import CLOCK, CONTROL, due_next
 
-Subscriptions = Mapping[str, Robots]  # topic of a sensor -> the robots for which somebody subscribes to it
+Subscriptions = Mapping[str, RobotIndices]  # topic of a sensor -> the robots for which somebody subscribes to it
 
 
 @dataclass(eq=False)
@@ -18,9 +18,9 @@ class Due:
     clock: bool = False  # a clock tick: /clock is due
     control: bool = False  # a control tick: the controllers' period is over
     sensors: Subscriptions = field(default_factory=dict)  # topic of each sensor that is due -> its subscribed robots
-    prepared: Prepared = Prepared([])  # the calls that measure what is due
+    prepared: MeasurementCalls = MeasurementCalls([])  # the calls that measure what is due
 
-    def of(self, topic: str) -> Robots:
+    def of(self, topic: str) -> RobotIndices:
         """The robots for which a sensor is due and subscribed to."""
         return self.sensors.get(topic, ())
 
@@ -28,8 +28,8 @@ class Due:
 class Agenda:
     """The ticks, and the sensors that somebody subscribes to."""
 
-    def __init__(self, sensors: Sensors, site: Site, rates: Rates) -> None:
-        self._sensors, self._site, self._rates = sensors.by_topic, site, rates
+    def __init__(self, sensors: Sensors, context: SensorContext, rates: Rates) -> None:
+        self._sensors, self._context, self._rates = sensors.by_topic, context, rates
         self._schedule_for({})
 
     def after(self, step: int, subscriptions: Subscriptions) -> Tuple[int, Due]:
@@ -55,7 +55,7 @@ class Agenda:
     def prepare(self) -> None:
         """Find the calls that measure what is due, anew after a change of the world."""
         for names, due in self._dues.items():
-            parts = [self._sensors[name].prepared(due.of(name)) for name in names if name in self._sensors]
+            parts = [self._sensors[name].measurement_calls(due.of(name)) for name in names if name in self._sensors]
             measure = [call for part in parts for call in part.measure]
             before = [call for part in parts for call in part.before]
-            due.prepared = Prepared([self._site.engine.update_fleet, *measure] if parts else [], before)
+            due.prepared = MeasurementCalls([self._context.engine.update_fleet, *measure] if parts else [], before)

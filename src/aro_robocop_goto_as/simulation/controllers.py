@@ -17,7 +17,7 @@ class _Pending(NamedTuple):
 class Controllers:
     """The nodes that command robots. The thread that runs the simulator calls all methods.
 
-    A control tick in lockstep: begin_tick(), then jobs are run for as long as hold() says, then end_tick().
+    A control tick in lockstep: begin_tick(), then jobs are run for as long as hold_time() says, then end_tick().
     """
 
     def __init__(self, simulator: Simulator, params: LockstepParams, clock: WallClock) -> None:
@@ -69,14 +69,14 @@ class Controllers:
         self._resets = self._simulator.resets
         self.lockstep.begin_tick(self.tick, connected)
 
-    def hold(self, connected: Connected) -> float:
+    def hold_time(self, connected: Connected) -> float:
         """How long to hold simulated time at this tick [s, wall] before asking again; 0: it may go on.
 
         After a reset nobody is waited for any more.
         """
         if self._simulator.resets != self._resets:
             return 0.0
-        return self.lockstep.hold(self.tick, connected)
+        return self.lockstep.hold_time(self.tick, connected)
 
     def end_tick(self) -> TickReport:
         """Apply the commands of the tick; where several nodes command one robot, the last one by name wins."""

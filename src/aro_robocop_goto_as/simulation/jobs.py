@@ -1,4 +1,4 @@
-"""Functions that other threads hand to the owner of a simulation, which runs them between two steps."""
+"""Functions that other threads hand to a simulation's thread, which runs them between two steps."""
 
 import contextlib
 import queue
@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 class WallClock:
-    """The machine's monotonic clock, and how the owner waits; tests use a clock that they move."""
+    """The machine's monotonic clock, and how the simulation thread waits; tests use a clock that they move."""
 
     def now(self) -> float:
         """Seconds from an arbitrary origin."""
@@ -32,19 +32,19 @@ class WallClock:
 
 
 class Jobs:
-    """Any thread may use `post`, `call` and `wait_for`; all else is for the owner's thread."""
+    """Any thread may use `post`, `call` and `wait_for`; all else is for the simulation thread."""
 
     def __init__(self, clock: WallClock, stopped: Callable[[], bool] = lambda: False) -> None:
-        """`stopped`: whether the owner's loop has ended, so that nobody will run jobs any more."""
+        """`stopped`: whether the simulation thread's loop has ended, so that nobody will run jobs any more."""
         self._clock = clock
         self._stopped = stopped
         self._queue: Queue[Callable[[], object]] = queue.Queue()
-        self.post: Callable[[Callable[[], object]], None] = self._queue.put  # has the owner run a job
+        self.post: Callable[[Callable[[], object]], None] = self._queue.put  # has the simulation thread run a job
 
     def call(self, function: Callable[[], T]) -> T:
-        """Have the owner run a function; returns what it returns, raises the RobocopError that it raises.
+        """Have the simulation thread run a function; returns what it returns, raises the RobocopError that it raises.
 
-        Any other exception is a programming error and ends the owner's loop.
+        Any other exception is a programming error and ends the simulation thread's loop.
         """
         future: Future[T] = Future()
 
@@ -58,7 +58,7 @@ class Jobs:
         return self.wait_for(future)
 
     def wait_for(self, future: "Future[T]") -> T:
-        """The result that the owner sets; ShutdownError when its loop has ended instead."""
+        """The result that the simulation thread sets; ShutdownError when its loop has ended instead."""
         while not self._stopped():
             with contextlib.suppress(TimeoutError):
                 return future.result(timeout=CALL_POLL)
@@ -76,6 +76,6 @@ class Jobs:
         job()
 
     def run_queued(self) -> None:
-        """Run the jobs that are queued now, and no more: their senders may be faster than the owner."""
+        """Run the jobs that are queued now, and no more: their senders may be faster than the simulation thread."""
         for _ in range(len(self)):
             self._queue.get_nowait()()

@@ -3,9 +3,8 @@
 A tick is the number of a control period. A node that answers ticks (`tick_answer`) names the tick of each answer. Any
 other node that is connected to cmd_vel has answered a tick when one of its commands has arrived since the tick before.
 The simulator waits until the timeout for a node that is expected to answer, and only for SILENCE_TIMEOUT for any other
-node. Expected is a node that
-- answers ticks, after its first answer;
-- has answered the last two ticks in a row, by commands.
+node. A node that answers ticks is expected from its first answer on, any other node once it has answered two ticks in a
+row. After a timeout, either has to answer two ticks in a row to be expected again.
 """
 
 from dataclasses import dataclass, field
@@ -92,7 +91,7 @@ class Lockstep:
         self._held_since = self._clock.now()
         self._update(tick, connected())
 
-    def hold(self, tick: int, connected: Connected) -> float:
+    def hold_time(self, tick: int, connected: Connected) -> float:
         """How long to hold simulated time at a tick [s, wall] before asking again; 0: nobody is waited for."""
         while True:
             missing = [known for known in self._controllers.values() if known.last_answered < tick]

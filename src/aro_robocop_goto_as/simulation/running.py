@@ -45,7 +45,7 @@ class RunningSimulator:
     def __init__(
         self, simulator: Simulator, clock: Optional[WallClock] = None, stopped: Callable[[], bool] = lambda: False
     ) -> None:
-        """`stopped`: whether to end the loop; by the machine's clock unless another one is given."""
+        """`clock`: the machine's if None; `stopped`: asked in each round of the loop whether to end it."""
         params, self._clock, self._stopped = simulator.params, clock or WallClock(), stopped
         self.simulator = simulator
         self.jobs = Jobs(self._clock, stopped)
@@ -67,10 +67,10 @@ class RunningSimulator:
         while not self._stopped():
             due = simulator.advance(subscriptions, time.steps_left(simulator.steps))
             if due is not None:
-                outputs.publish(due, time.unbounded and not due.control)
+                outputs.publish(due, time.as_fast_as_possible and not due.control)
                 if due.control and controllers.in_lockstep:
                     controllers.begin_tick(outputs.connected)
-                    self._hold(lambda: controllers.hold(outputs.connected), outputs)
+                    self._hold(lambda: controllers.hold_time(outputs.connected), outputs)
                     outputs.tick_ended(controllers.end_tick())
             if time.end_span(simulator.steps) or (due is not None and due.clock):
                 self._pace(outputs)
@@ -81,14 +81,14 @@ class RunningSimulator:
         """Run the jobs that have come, and hold simulated time until the wall clock has reached it."""
         time, simulator = self.time_control, self.simulator
         self._run_jobs(outputs)
-        wait = time.hold(simulator.steps)
+        wait = time.hold_time(simulator.steps)
         if 0.0 < wait < MAX_SLEEP:  # jobs that come meanwhile take effect from the next step on, as if they ran at once
             self._clock.sleep(wait)
             time.pacer.waited(wait)
             self._run_jobs(outputs)
-            wait = time.hold(simulator.steps)
+            wait = time.hold_time(simulator.steps)
         if wait > 0.0:
-            self._hold(lambda: time.hold(simulator.steps), outputs)
+            self._hold(lambda: time.hold_time(simulator.steps), outputs)
 
     def _run_jobs(self, outputs: Outputs) -> None:
         self.jobs.run_queued()

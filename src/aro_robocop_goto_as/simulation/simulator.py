@@ -15,7 +15,7 @@ from ..robot.base_controller import clamped
 from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
 from ..sensors.catalog import Sensors
-from ..sensors.sensor import Site
+from ..sensors.sensor import SensorContext
 from ..world.model import Occupancy, World
 from .agenda import Agenda, Due, Subscriptions
 from .params import SimParams
@@ -43,9 +43,9 @@ class Simulator:
         self.steps = 0
         self.rate = params.rates.physics_rate  # [Hz]
         self.engine = engine
-        self.site = Site(world, engine, self.rate, params.world.seed)
-        self.sensors = Sensors(params.sensors, self.site, params.topics.localization == "truth")
-        self._agenda = Agenda(self.sensors, self.site, params.rates)
+        self.context = SensorContext(world, engine, self.rate, params.world.seed)
+        self.sensors = Sensors(params.sensors, self.context, params.topics.localization == "truth")
+        self._agenda = Agenda(self.sensors, self.context, params.rates)
         self.changes: Set[Change] = set()  # since somebody emptied it
         self.resets = 0
         self.placed = [0] * len(robots)  # how often each robot was placed; the reset places all of them
@@ -68,12 +68,12 @@ class Simulator:
     @property
     def world_time(self) -> float:
         """Simulated time [s] since the last reset; the poses of moving obstacles are functions of it."""
-        return self.site.time
+        return self.context.time
 
     @property
     def seed(self) -> int:
         """The seed of all noise."""
-        return self.site.episode.seed
+        return self.context.episode.seed
 
     # -- steps --
 
@@ -109,11 +109,11 @@ class Simulator:
         for at_once in [1] * steps if self.moving else [steps]:
             self.engine.advance(self.steps, at_once)
             self.steps += at_once
-            self.site.episode.step += at_once
+            self.context.episode.step += at_once
             if self.moving:
                 self.engine.move_obstacles(self.world_time)
         if self.moving:
-            self.site.sections.move(self.world_time)
+            self.context.sections.move(self.world_time)
 
     # -- the state of the world and of its robots --
 
@@ -159,7 +159,7 @@ class Simulator:
         if self.world.occupancy is not None:
             return self.world.occupancy
         model = self.robots[0].model
-        section = self.site.sections.section(model.height_of(model.base_from_scan))
+        section = self.context.sections.section(model.height_of(model.base_from_scan))
         poses = [self.world_from_footprint(robot) for robot in range(len(self.robots))]
         starts = [*(robot.spawn for robot in self.robots), *poses]
         return occupancy_of(section.segments, section.circles_at_start, starts, self.params.world.map_resolution)
@@ -171,7 +171,7 @@ class Simulator:
         self.world = world.with_motion(self.params.world.moving)
         self.moving = bool(self.world.moving())
         self._close_sensors()
-        self.site.change_world(self.world)
+        self.context.change_world(self.world)
         self._agenda.prepare()
         self.engine.change_world(self.world, self.world_time)
         self._newly_placed.update(range(len(self.robots)))
@@ -220,7 +220,7 @@ class Simulator:
         self.engine.update_fleet()
         for sensor in self.sensors.by_topic.values():
             sensor.reset(spawns)
-        self.site.reset(self.seed if seed is None else seed)
+        self.context.reset(self.seed if seed is None else seed)
         self._newly_placed = set(range(len(self.robots)))
         self.placed = [count + 1 for count in self.placed]
         self.resets += 1

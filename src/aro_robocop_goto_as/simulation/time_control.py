@@ -32,11 +32,11 @@ class FactorReport:
 
 
 class Pacer:
-    """Keeps simulated time at `factor` times the wall clock; factor 0 waits for rests only.
+    """Keeps simulated time at `factor` times the wall clock; factor 0 inserts rests only.
 
-    A rest lets the process's other threads run, which accept subscribers and receive commands. CPython takes the
-    interpreter from a thread that has kept it for 5 ms. numpy often releases the interpreter for microseconds. Each
-    time, the 5 ms begin anew, and the other threads, which wake up too slowly, can wait for minutes.
+    A rest lets the process's other threads run, which accept subscribers and receive commands. A thread that waits for
+    the GIL asks for it after 5 ms (sys.getswitchinterval). numpy often releases the GIL for microseconds, after which
+    these 5 ms begin anew, so that other threads could starve for minutes.
     """
 
     def __init__(self, factor: float, rate: int, now: Callable[[], float]) -> None:
@@ -53,8 +53,8 @@ class Pacer:
         self._rested = self._anchor_wall
         self._waited = self._lag = self._dropped = 0.0
 
-    def ahead(self, step: int) -> float:
-        """How long to wait [s, wall] before going on from a step: until it is due, or for a rest."""
+    def wait_time(self, step: int) -> float:
+        """How long to wait [s, wall] before going on from a step: until it is due, or for a rest, which begins now."""
         wall = self.now()
         ahead = self._until_due(step, wall)
         if ahead == 0.0 and wall - self._rested >= REST_PERIOD:
@@ -93,7 +93,10 @@ class Pacer:
 
 
 class TimeControl:
-    """Pause, span and pacing. A `step` is the simulator's count; its owner runs jobs for as long as hold() says."""
+    """Pause, span and pacing. A span is the simulated time that one request of ~step asks for.
+
+    A `step` is the simulator's step count. The simulation thread runs jobs for as long as hold_time() says.
+    """
 
     def __init__(self, params: TimeParams, rate: int, clock: WallClock) -> None:
         """`rate` [Hz] of the steps."""
@@ -112,15 +115,15 @@ class TimeControl:
         return self.paused and not self._span_end
 
     @property
-    def unbounded(self) -> bool:
+    def as_fast_as_possible(self) -> bool:
         """Return whether steps follow each other as fast as possible: nothing but a controller holds them."""
         return not (self.pacer.factor or self.paused or self._span_end)
 
-    def hold(self, step: int) -> float:
+    def hold_time(self, step: int) -> float:
         """How long to hold simulated time at a step [s, wall] before asking again; 0: it may go on."""
         if self.standing:
             return PAUSED_PERIOD
-        return min(MAX_HOLD, self.pacer.ahead(step))
+        return min(MAX_HOLD, self.pacer.wait_time(step))
 
     def repetition_due(self) -> bool:
         """Return whether /clock has to be repeated now, because simulated time stands still."""

@@ -17,6 +17,7 @@ MAX_TOP = 0.2  # [m] above z = 0: the highest top of a slab that is ground
 MIN_SIDE = 3.0  # [m] the shortest side of a slab that is ground
 MAX_TILT = 1e-3  # [rad] that a slab may be tilted; then its highest point is the ground
 LEVEL = 1e-6  # [m] by which a top may be higher than the ground and still be part of it
+MAX_TILT_OF_PLANE = 1e-6  # [rad] of a plane, which has no end, that is level
 MIN_FILLED = 0.9  # of its rectangle: what the top of a mesh has to cover to be a slab
 
 
@@ -41,7 +42,7 @@ def top(obstacle: Obstacle) -> float:
     """The height [m] of an obstacle's highest point; +inf for a plane, unless it is level and faces up."""
     shape, z, turn = obstacle.geometry, obstacle.pose.position[2], rotation_matrix(obstacle.pose.orientation)
     if isinstance(shape, Plane):
-        return z if float(turn[2] @ np.array(shape.normal)) > 1.0 - LEVEL**2 else math.inf
+        return z if float(turn[2] @ np.array(shape.normal)) >= math.cos(MAX_TILT_OF_PLANE) else math.inf
     if isinstance(shape, Mesh):
         return z + float((shape.corners @ turn[2]).max())
     if isinstance(shape, Box):

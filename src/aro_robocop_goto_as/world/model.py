@@ -32,7 +32,10 @@ class Occupancy:
         return 0 <= column < columns and 0 <= row < rows and bool(self.cells[row, column] >= 0)
 
     def nearest_free(self, x: float, y: float) -> Tuple[float, float]:
-        """The centre [m] in the map of the cell nearest to a point that is known and not occupied, if there is one."""
+        """The centre [m] in the map of the cell nearest to a point that is known and not occupied.
+
+        If there is none, the centre of the first cell.
+        """
         column, row = self._in_cells(x, y)
         rows, columns = (np.arange(count, dtype=np.float32) + 0.5 for count in self.cells.shape)
         squares = (rows[:, None] - row) ** 2 + (columns - column) ** 2
@@ -73,9 +76,9 @@ class World:
 
     obstacles: in the file's order, the ground included
     spawn: world_from_footprint of a robot at the start [m, rad]
-    has_spawn: whether the file says so; otherwise there may be no room for a robot
-    has_saved_robot: whether a robot was saved with the world; its pose is `spawn` if the file does not say one, which
-        without such a robot is the origin
+    has_spawn: whether the file gives it; otherwise it is the pose of the first robot that was saved with the world, or
+        else the origin, and there may be no room for a robot
+    has_saved_robot: whether a robot was saved with the world
     ignored: what may have an effect in Gazebo, such as "plugin 'lift' (line 4)"
     approximated: each element that differs from the file, such as "'hill/link/c' is left out: <heightmap> (line 4)"
     path: the file, as it was given to load_world

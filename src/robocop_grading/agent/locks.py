@@ -23,7 +23,7 @@ class Lock:
             return False
         if not scheduler.active:
             return bool(self._lock.acquire(True, timeout))
-        waiter = scheduler.this_thread()
+        waiter = scheduler.new_waiter()
         with scheduler.guard:
             self._waiters.append(waiter)  # before the second attempt: release() looks for it after releasing
             if self._lock.acquire(False):

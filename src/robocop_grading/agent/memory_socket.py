@@ -53,7 +53,7 @@ class MemorySocket:
                     data = bytes(self._data[:size])
                     del self._data[:size]
                     return data
-                waiter = self._reader = scheduler.this_thread()
+                waiter = self._reader = scheduler.new_waiter()
                 scheduler.park(waiter, NEVER)
             scheduler.wait(waiter)
 

@@ -54,7 +54,7 @@ class RosClock:
         """Have the calling thread sleep until the first tick at or after the end of its sleep."""
         import rospy
 
-        until_ns, waiter = self.now_ns + length_ns, scheduler.this_thread()
+        until_ns, waiter = self.now_ns + length_ns, scheduler.new_waiter()
         with scheduler.guard:
             sleeps = until_ns > self.now_ns and not rospy.is_shutdown()
             if sleeps:

@@ -44,7 +44,7 @@ class Scheduler:
                                       +-> running in the background: it sleeps in an unknown way, or computes for
                                           long, and other threads have their turns meanwhile; until it waits or ends
 
-    So the threads run in the same order in every run. Methods that say "with the guard held" are called in this way.
+    So the threads run in the same order in every run. Methods that say "with the guard held" have to be called so.
     """
 
     def __init__(self) -> None:
@@ -78,14 +78,15 @@ class Scheduler:
 
     # -- for the threads --
 
-    def this_thread(self) -> Waiter:
+    def new_waiter(self) -> Waiter:
         """A wait of the calling thread."""
         return Waiter(_thread.get_ident())
 
     def deadline(self, timeout: Optional[float]) -> int:
         """The simulated time [ns] at which a wait that begins now ends."""
-        never = timeout is None or timeout > 1e9
-        return NEVER if timeout is None or never else self.now_ns + max(SLACK, int(round(timeout * 1e9)))
+        if timeout is None or timeout > 1e9:
+            return NEVER
+        return self.now_ns + max(SLACK, int(round(timeout * 1e9)))
 
     def park(self, waiter: Waiter, until_ns: int = NEVER) -> None:
         """The calling thread is about to wait; with the guard held."""
@@ -138,14 +139,14 @@ class Scheduler:
 
     def pause(self, until_ns: int) -> None:
         """Wait for a simulated time."""
-        waiter = self.this_thread()
+        waiter = self.new_waiter()
         with self.guard:
             self.park(waiter, until_ns)
         self.wait(waiter)
 
     def yield_turn(self) -> None:
         """Let the threads run that have been woken up, then go on: what sched_yield does."""
-        waiter = self.this_thread()
+        waiter = self.new_waiter()
         with self.guard:
             if not self.queue:
                 return

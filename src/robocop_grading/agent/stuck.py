@@ -20,7 +20,7 @@ from .threads import native_ids
 
 STARTS = ("subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system")  # audit events
 ROS_PROGRAM = re.compile(r"\b(?:ros(?:bag|launch|node|param|run|service|topic)|roscore)\b")
-TICK = os.sysconf("SC_CLK_TCK")
+TICKS_PER_SECOND = os.sysconf("SC_CLK_TCK")
 ASLEEP = re.compile(r"^State:\s*[ST].*^voluntary_ctxt_switches:\s*(\d+)", re.MULTILINE | re.DOTALL)  # in a status file
 WINDOW = 1.0  # [s, wall]
 _process_time, _thread_time, _wall_time = time.process_time, time.thread_time, time.monotonic
@@ -47,7 +47,7 @@ def all_asleep() -> Optional[Set[int]]:
 
 
 def _sleep_of(native_id: int) -> str:
-    """How often a thread has run, if it sleeps now; otherwise an empty text."""
+    """How often a thread has run, if it sleeps now; "ended" if it is gone, otherwise an empty text."""
     try:
         with open(f"/proc/self/task/{native_id}/status", errors="replace") as file:  # a thread has any name
             asleep = ASLEEP.search(file.read())
@@ -119,7 +119,7 @@ class ChildProcesses:
                 states += words[0]
                 ticks += int(words[11]) + int(words[12])
         self.busy = "R" in states or "D" in states
-        self.processor_time = ticks / TICK
+        self.processor_time = ticks / TICKS_PER_SECOND
 
 
 def _children(process: int) -> List[int]:

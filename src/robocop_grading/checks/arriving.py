@@ -13,7 +13,7 @@ from .verdict import Failed, Kind, NotReached, Verdict, check
 LATE = 0.22  # [s] from the true arrival to the success: a loop's period, one of odometry and one of the recording
 LATE_AT_REST = 1.0  # [s] likewise of a robot that stands at the goal meanwhile
 LARGE_TURN = 0.5  # [rad] of a robot at the goal
-AT_ONCE = 2.0  # [s] from a goal that is reached already to its success
+MAX_TIME_AT_GOAL = 2.0  # [s] from a goal that is reached already to its success
 END_THERE = f"end the goal as soon as position_error is below {GOAL_RADIUS:g} m"
 WAITS = f"The robot stands at the goal, but the result comes later: {END_THERE}"
 TURNS = f"The robot turns at the goal: {END_THERE}"
@@ -110,7 +110,7 @@ def _not_at_once(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fai
     samples = record.samples_between(goal.time, end + limits.stop_within)
     moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)
     turn = _turned(samples)
-    if end - goal.time <= AT_ONCE and moved <= 0.05 and turn <= LARGE_TURN:
+    if end - goal.time <= MAX_TIME_AT_GOAL and moved <= 0.05 and turn <= LARGE_TURN:
         return None
     seen = f"a result after {end - goal.time:.1f} s, {moved:.2f} m of motion and a turn of {turn:.1f} rad"
     if moved <= 0.05:

@@ -7,7 +7,7 @@ from typing import List, Mapping, Optional, Sequence
 from ..handout import Limits
 from ..record import PREEMPTED, Click, Record, SentGoal
 from . import bridge_causes as causes
-from .bridge_reports import is_silent, untrue, wrong_reports
+from .bridge_reports import is_silent, wrong_reports, wrong_state_reported
 from .node_lifetime import no_exception, stays_alive
 from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
@@ -17,13 +17,18 @@ def _goals_after(record: Record, click: Click, until: float = math.inf) -> List[
     return [goal for goal in record.goals if click.time - 1e-6 <= goal.time <= until]
 
 
+def _goals_of(record: Record, number: int) -> List[SentGoal]:
+    """The goals between a click and the next one; what a click causes may come without any simulated time passing."""
+    until = record.clicks[number + 1].time - 1e-3 if number + 1 < len(record.clicks) else math.inf
+    return _goals_after(record, record.clicks[number], until)
+
+
 @check("track")
 def forwards_goal(record: Record, limits: Limits) -> Verdict:
     """A 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position."""
     if not record.clicks:
         return NotReached("there was no click")
-    click, *later = record.clicks
-    goals = _goals_after(record, click, later[0].time - 1e-3 if later else math.inf)
+    click, goals = record.clicks[0], _goals_of(record, 0)
     wanted = f"x {click.x:g} y {click.y:g}"
     if not goals:
         return Failed(f"a goal at {wanted}", "no goal", click.time, causes.missing_connection(record), Kind.NO_GOAL)
@@ -80,11 +85,8 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     if not newer:
         cause = causes.CANCELLED_ONLY if older.id in cancelled else causes.NO_NEWER_GOAL
         return Failed("the newer goal", "no goal", click.time, cause, Kind.NO_GOAL)
-    if (
-        causes.distance(older, before.x, before.y)
-        <= causes.POSITION_TOLERANCE
-        < causes.distance(newer[-1], click.x, click.y)
-    ):
+    is_right = causes.distance(newer[-1], click.x, click.y) <= causes.POSITION_TOLERANCE  # NaN is not
+    if causes.distance(older, before.x, before.y) <= causes.POSITION_TOLERANCE and not is_right:
         x, y = newer[-1].x, newer[-1].y
         same = causes.distance(older, x, y) <= causes.POSITION_TOLERANCE
         cause = causes.OLDER_POSITION if same else causes.other_position(click, newer[-1])
@@ -138,9 +140,7 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
     if not record.clicks:
         return NotReached("there was no click")
     for number, click in enumerate(record.clicks):
-        # What a click causes may come without any simulated time passing.
-        until = record.clicks[number + 1].time - 1e-3 if number + 1 < len(record.clicks) else math.inf
-        goals = _goals_after(record, click, until)
+        goals = _goals_of(record, number)
         if not goals:
             cause = (
                 f"The click is newer than the newest transform from {click.frame} to odom, as in the lab, so tf2 "
@@ -164,7 +164,7 @@ def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
     if record is None or any(_crash(it, limits) for it in records.values()):
         return []
     if "click" in records and reports_status(records["click"], limits) is PASSED and "watched" in record.marks:
-        wrong = untrue(record)
+        wrong = wrong_state_reported(record)
         found += [causes.REPORTS_STOP] if is_silent(record, limits) else [wrong.cause] if wrong else []
     if "replace" in records and cancels_older(records["replace"], limits) is PASSED:
         verdict = cancels_older(record, limits)

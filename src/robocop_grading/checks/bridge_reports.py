@@ -13,7 +13,7 @@ from .verdict import Failed, Kind
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
 STATES = re.compile(rf"\b({'|'.join(STATUS_NAMES)})\b")
 NUMBER = re.compile(r"\b(?:state|status|stav)\b\D{0,5}\b([0-9])\b|^published on \S+: ([0-9])$", re.IGNORECASE)
-PENDING_AS_TOLD = "_has_header"  # actionlib's GoalStatus.to_string(0): the message class has this constant, too: False
+MISNAMED_PENDING = "_has_header"  # actionlib's GoalStatus.to_string(0): the message class has this constant, too: False
 # How a recorded line begins: as rospy writes it to a terminal, as recorded from /rosout, or a published report.
 BEGIN = re.compile(r"^(?:\x1b\[[\d;]*m)*(?:\[ *[A-Z]+\] ?(?:\[[\d., ]+\]:? ?)?|published on \S+: )?")
 UNCALLED = re.compile(r"<(?:bound method|function) [^>]*>*")
@@ -88,13 +88,13 @@ def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
     start, lines = record.marks["watching"], _watched(record)
     count = len(_began([line for line in lines if not _says_nothing(line)]))
     if count >= limits.status_reports:
-        return _ended(record, _began(lines)) or untrue(record)
+        return _reports_stopped(record, _began(lines)) or wrong_state_reported(record)
     wanted = f"{limits.status_reports} reports within {limits.status_span:g} s"
     if len(_began(lines)) >= limits.status_reports:
         empty = next(line for line in lines if _says_nothing(line))
         uncalled = UNCALLED.search(_content(empty))
         cause = UNCALLED_REPORT if uncalled else f'{SAYS_NOTHING}, as in "{_content(empty)}": {REPORT}'
-        return Failed(wanted, f"{count}", empty.time, cause, Kind.EMPTY_REPORT)
+        return Failed(wanted, f"{count}", empty.time, cause)
     cause = REPORTED_ONCE if count else NOTHING_REPORTED
     return Failed(wanted, f"{count}", start, cause, Kind.NO_REPORT)
 
@@ -116,7 +116,7 @@ class Report(NamedTuple):
         return not self.named[0].isdigit()
 
 
-class Stretch(NamedTuple):
+class StateInterval(NamedTuple):
     """From when until when [s] the newest goal is in a state, and what is reported then."""
 
     start: float
@@ -124,27 +124,27 @@ class Stretch(NamedTuple):
     true: int
     reports: List[Report]
 
-    def untrue(self) -> List[Report]:
+    def wrong_reports(self) -> List[Report]:
         """The reports that name other states only; a goal that has ended may be called PENDING or LOST as well."""
         right = {self.true} if self.true in RUNNING else {self.true, PENDING, LOST}
         return [it for it in self.reports if not it.states & (right if it.is_by_name else {self.true})]
 
-    def often(self) -> Set[Tuple[str, int]]:
+    def frequent_words(self) -> Set[Tuple[str, int]]:
         """The words in most of its reports."""
         counts = Counter(word for report in self.reports for word in report.words)
         return {word for word, count in counts.items() if 2 * count > len(self.reports)}
 
 
 def _report(line: Line) -> Report:
-    text = line.text.replace(PENDING_AS_TOLD, STATUS_NAMES[PENDING])
+    text = line.text.replace(MISNAMED_PENDING, STATUS_NAMES[PENDING])
     named = STATES.findall(text.upper()) or [one or other for one, other in NUMBER.findall(text)]
     states = {int(it) if it.isdigit() else STATUS_NAMES.index(it) for it in named}
     words = Counter(WORD.findall(_content(line).lower()))
     return Report(line.time, tuple(named), states, frozenset(words.items()))
 
 
-def _stretches(record: Record) -> List[Stretch]:
-    """The states of the newest goal in their order, those that last."""
+def _state_intervals(record: Record) -> List[StateInterval]:
+    """The intervals of at least SHORTEST, in their order, in which the newest goal stays in one state."""
     numbers = {goal.id: number for number, goal in enumerate(record.goals)}
     changes, newest = [], 0
     for change in sorted(record.statuses, key=lambda change: change.time):
@@ -154,16 +154,18 @@ def _stretches(record: Record) -> List[Stretch]:
     reports = [report for report in map(_report, record.lines) if report.named]
     ends = [*(change.time for change in changes[1:]), math.inf]
     return [
-        Stretch(it.time, end, it.status, [report for report in reports if it.time + SETTLED < report.time < end - 1e-6])
+        StateInterval(
+            it.time, end, it.status, [report for report in reports if it.time + SETTLED < report.time < end - 1e-6]
+        )
         for it, end in zip(changes, ends)
         if end - it.time >= SHORTEST
     ]
 
 
-def _follow_the_truth(stretches: Sequence[Stretch]) -> bool:
+def _follow_the_truth(intervals: Sequence[StateInterval]) -> bool:
     """Return whether some word, in whatever language, tells a goal that is running from one that has ended."""
-    running = [it.often() for it in stretches if it.reports and it.true in RUNNING]
-    ended = [it.often() for it in stretches if it.reports and it.true not in RUNNING]
+    running = [it.frequent_words() for it in intervals if it.reports and it.true in RUNNING]
+    ended = [it.frequent_words() for it in intervals if it.reports and it.true not in RUNNING]
     if not running or not ended:
         return False
     return bool(set.intersection(*running).difference(*ended) or set.intersection(*ended).difference(*running))
@@ -173,33 +175,33 @@ def _state_names(states: Set[int]) -> str:
     return " ".join(STATUS_NAMES[state] for state in sorted(states))
 
 
-def untrue(record: Record) -> Optional[Failed]:
-    """Name the failure if most reports of a state, of two or more, name other states: a report may be late by one.
+def wrong_state_reported(record: Record) -> Optional[Failed]:
+    """Name the failure if, in some interval with two reports or more, most of them name other states; one may be late.
 
-    Only reports with actionlib's names or numbers are judged. They are right if any words change with the truth, unless
-    it is the names that change otherwise.
+    Only reports with actionlib's names or numbers are judged. A bridge that always names the same state passes if its
+    other words tell a running goal from one that has ended.
     """
-    stretches = _stretches(record)
-    named = [{one.named for one in it.reports if len(one.states) > 1} for it in stretches if it.reports]
+    intervals = _state_intervals(record)
+    named = [{one.named for one in it.reports if len(one.states) > 1} for it in intervals if it.reports]
     legend = set.intersection(*named) if len(named) > 1 else set()
-    others = [it._replace(reports=[one for one in it.reports if one.named not in legend]) for it in stretches]
+    others = [it._replace(reports=[one for one in it.reports if one.named not in legend]) for it in intervals]
     cause = "" if any(it.reports for it in others) or not legend else SEVERAL_STATES
-    stretches = stretches if cause else others
-    wrong = [it for it in stretches if len(it.reports) > 1 and (cause or 2 * len(it.untrue()) > len(it.reports))]
-    names = {report.named for it in stretches for report in it.reports if report.is_by_name}
-    if not wrong or len(names) < 2 and _follow_the_truth(stretches):
+    intervals = intervals if cause else others
+    wrong = [it for it in intervals if len(it.reports) > 1 and (cause or 2 * len(it.wrong_reports()) > len(it.reports))]
+    names = {report.named for it in intervals for report in it.reports if report.is_by_name}
+    if not wrong or len(names) < 2 and _follow_the_truth(intervals):
         return None
-    first = wrong[0].reports[0] if cause else wrong[0].untrue()[0]
+    first = wrong[0].reports[0] if cause else wrong[0].wrong_reports()[0]
     seen = ", ".join(dict.fromkeys(_state_names(report.states) for report in wrong[0].reports))
-    cause = cause or _untrue_cause(record, stretches, wrong[0])
-    return Failed(STATUS_NAMES[wrong[0].true], seen, first.time, cause, Kind.UNTRUE_REPORT)
+    cause = cause or _untrue_cause(record, intervals, wrong[0])
+    return Failed(STATUS_NAMES[wrong[0].true], seen, first.time, cause)
 
 
-def _untrue_cause(record: Record, stretches: Sequence[Stretch], wrong: Stretch) -> str:
+def _untrue_cause(record: Record, intervals: Sequence[StateInterval], wrong: StateInterval) -> str:
     """Which mistake explains that other states than the true one are reported."""
-    first, true = wrong.untrue()[0], STATUS_NAMES[wrong.true]
-    shifts = {state - it.true for it in stretches for report in it.reports for state in report.states}
-    if len(shifts) == 1 and len({it.true for it in stretches if it.reports}) > 1:
+    first, true = wrong.wrong_reports()[0], STATUS_NAMES[wrong.true]
+    shifts = {state - it.true for it in intervals for report in it.reports for state in report.states}
+    if len(shifts) == 1 and len({it.true for it in intervals if it.reports}) > 1:
         return f"The names of the states are shifted: {_state_names(first.states)} is reported for {true}; {NUMBERS}"
     newest = max((goal.time for goal in record.goals if goal.time <= wrong.start), default=0.0)
     earlier = {it.id: it.status for it in record.statuses if it.time <= newest and it.status not in RUNNING}
@@ -208,10 +210,10 @@ def _untrue_cause(record: Record, stretches: Sequence[Stretch], wrong: Stretch) 
     return f"The bridge reports {_state_names(first.states)} while the goal is {true}: {REPORT}"
 
 
-def _ended(record: Record, began: List[float]) -> Optional[Failed]:
+def _reports_stopped(record: Record, began: List[float]) -> Optional[Failed]:
     """Name the failure of a bridge that reports nothing of a later goal; `began`: its reports of the first one [s]."""
     period = median([later - time for time, later in zip(began, began[1:])] or [math.inf])
-    for it in _stretches(record):
+    for it in _state_intervals(record):
         watched = it.true == ACTIVE and 2.0 * period + SETTLED < it.end - it.start < math.inf
         if watched and not _between(record, it.start + SETTLED, it.end):
             return Failed("reports of each goal", "none", it.start, REPORTS_END, Kind.NO_REPORT)

@@ -4,21 +4,23 @@ from dataclasses import replace
 from typing import Callable, Optional
 
 from ..handout import GOAL_RADIUS, Limits
-from ..record import ABORTED, PREEMPTED, SUCCEEDED, TERMINAL, Record, Result, SentGoal, status_name
+from ..record import ABORTED, AT_END, PREEMPTED, SUCCEEDED, TERMINAL, Record, Result, SentGoal, status_name
 from ..texts import sentences
 from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged_cause, no_state
 from .topic_use import wrong_type
-from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check, ended
+from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check, kind_of_wrong_state
 
 TWO_STATES = "The goal got two terminal states"
 NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
-AT_ONCE = 0.3  # [s] a goal that ends within this time was not driven to
+TOO_SOON = 0.3  # [s] a goal that ends within this time was not driven to
+LOOK = 0.15  # [s] in which the robot has to stand still, once it has to
+ON_ITS_WAY = 0.3  # [s] after a result, in which a command may still arrive that was sent before it
 UNNOTICED = (
-    "It was not noticed. Is the distance ahead checked in each iteration, is it that of the beams ahead, and does the "
-    "scan's callback return at once?"
+    "The server did not notice the obstacle. Does it check the distance ahead in each iteration, does it use the beams "
+    "that point ahead, and does the callback of the scan return at once?"
 )
 TOO_FAR = (
-    f"The goal succeeds before position_error is below {GOAL_RADIUS:g} m: is the threshold another one, is another "
+    f"The goal succeeds before position_error is below {GOAL_RADIUS:g} m: is the threshold wrong, is the wrong "
     "quantity compared, or does something else end the goal?"
 )
 EMPTY_RESULT = (
@@ -39,7 +41,7 @@ def wrong_ending(record: Record, goal: SentGoal, wanted: int, limits: Limits) ->
     if result.status == wanted:
         return None
     collision = _collision(record, goal, result.time)
-    at_end = record.samples_between(result.time - 0.25, result.time)
+    at_end = record.samples_between(result.time - AT_END, result.time)
     stopped = any(sample.ahead <= limits.abort_farthest for sample in at_end)  # where an obstacle has to end the goal
     if (wanted, result.status) == (ABORTED, SUCCEEDED) and not collision and not stopped:
         early = success_too_far(record, goal, limits)
@@ -49,7 +51,9 @@ def wrong_ending(record: Record, goal: SentGoal, wanted: int, limits: Limits) ->
     if collision and (wanted, result.status) == (ABORTED, SUCCEEDED):  # odometry continued to advance
         cause = wrong_type(record, "/scan") or narrow_obstacle(record) or UNNOTICED
     seen = status_name(result.status) + (f": {result.message}" if result.message else "")
-    return Failed(status_name(wanted), seen, result.time, sentences(collision, cause), ended(result.status), goal)
+    return Failed(
+        status_name(wanted), seen, result.time, sentences(collision, cause), kind_of_wrong_state(result.status), goal
+    )
 
 
 def wrong_success(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
@@ -120,23 +124,23 @@ def _asked_to_end(record: Record, goal: SentGoal, end: float) -> bool:
 def success_too_far(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
     """What went wrong with a goal that succeeded away from its position."""
     result = record.results_of(goal)[0]
-    at_end = record.samples_between(result.time - 0.2, result.time)
+    at_end = record.samples_between(result.time - AT_END, result.time)
     nearest = min((goal.errors_at(sample)[0] for sample in at_end), default=0.0)
     if nearest <= limits.reached:
         return None
     own = [it.position_error for it in record.feedback_of(goal) if it.time <= result.time]
     kind, cause = Kind.TOO_FAR, TOO_FAR
     if own and own[-1] < GOAL_RADIUS:
-        cause = f"The server takes the robot to be at the goal: its own position_error is {own[-1]:.3f} m"
+        cause = f"The server believes that the robot is at the goal: its own position_error is {own[-1]:.3f} m"
     if _at_once(record, goal) and any(_took_longer(record, it) for it in record.goals if it.time < goal.time):
-        kind, cause = Kind.NOT_RESET, "What an earlier goal has changed is not reset when a goal begins"
+        kind, cause = Kind.NOT_RESET, "What an earlier goal has changed is not reset when a new goal begins"
     seen = f"success {nearest:.2f} m away"
     return Failed(f"success within {GOAL_RADIUS:g} m", seen, result.time, cause, kind, goal)
 
 
 def _at_once(record: Record, goal: SentGoal) -> bool:
     """Return whether a goal has ended too soon to be driven to."""
-    return any(result.time - goal.time < AT_ONCE for result in record.results_of(goal)[:1])
+    return any(result.time - goal.time < TOO_SOON for result in record.results_of(goal)[:1])
 
 
 def _took_longer(record: Record, goal: SentGoal) -> bool:
@@ -176,8 +180,8 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
     for number, goal in enumerate(record.goals):
         for result in record.results_of(goal)[:1]:
             stopped = result.time + limits.stop_within
-            after = record.samples_between(stopped, stopped + 0.15)
-            replaced = number + 1 < len(record.goals) and record.goals[number + 1].time < stopped
+            after = record.samples_between(stopped, stopped + LOOK)
+            replaced = number + 1 < len(record.goals) and record.goals[number + 1].time < stopped + LOOK
             if not after or replaced:
                 continue
             judged = True
@@ -191,7 +195,7 @@ def stands_at_end(record: Record, limits: Limits) -> Verdict:
 
 def keeps_moving(record: Record, result: Result, until: float) -> str:
     """Why a robot does not stop between a result and a time [s]: the last command, or further commands."""
-    commands = [it for it in record.commands if result.time + AT_ONCE < it.time <= until]
+    commands = [it for it in record.commands if result.time + ON_ITS_WAY < it.time <= until]
     later = any((it.v, it.w) != (0.0, 0.0) for it in commands)
     state = status_name(result.status)
     if later:

@@ -4,10 +4,12 @@ import math
 from statistics import mean, median
 from typing import Callable, List, Sequence, Set, Tuple
 
+from ..handout import Limits
 from ..record import ERRORS, wrapped
 from .feedback_hypotheses import ANGLE, CAUSES, FROM_ORIGIN, IN_DEGREES, POSITION, SENTENCES, UNCHANGED, Pair
 
-TOLERANCES = (0.06, 0.12)  # [m], [rad] within which a value fits a hypothesis: the default tolerances of the checks
+# [m], [rad] within which a value fits a hypothesis
+TOLERANCES = Limits().position_tolerance, Limits().angle_tolerance
 MAX_WRONG = 0.1  # share of a scenario's values that may not fit: single ones when a turn ends
 MAX_WRONG_TIME = 0.45  # [s] longest row of values that may not fit
 MAX_UNEXPLAINED = 0.3  # share of all wrong values

@@ -3,7 +3,9 @@
 import difflib
 from typing import Sequence
 
-from ..handout import ACTION, ACTION_TYPE, Limits
+from aro_robocop_goto_as.names import ACTION_TYPE
+
+from ..handout import ACTION, Limits
 from ..record import Death, Record
 from .output import DELAY, TRACEBACK, TRACEBACK_LOGGED, UNCAUGHT, first_error, last_error
 from .topic_use import other_action

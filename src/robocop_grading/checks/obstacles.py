@@ -16,12 +16,12 @@ from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
 ABORTED_FAR = (
-    f"The goal was aborted farther than {STOP_DISTANCE:g} m from the obstacle: is the threshold another one, do beams "
+    f"The goal was aborted farther than {STOP_DISTANCE:g} m from the obstacle: is the threshold wrong, do beams "
     "count that are not ahead, or does something else abort the goal?"
 )
 ABORTED_LATER = "and the goal was aborted only when it had moved away again: abort it at once"
 ABORTED_NEAR = (
-    f"The goal was aborted nearer than {STOP_DISTANCE:g} m to the obstacle: is the threshold another one, is the "
+    f"The goal was aborted nearer than {STOP_DISTANCE:g} m to the obstacle: is the threshold wrong, is the "
     "newest scan used in each iteration, and are the beams that count those ahead?"
 )
 

@@ -38,7 +38,7 @@ NOT_IMPORTED = "tf2 can transform messages of geometry_msgs only after: import t
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 JUST_BEFORE = 1.0  # [s] before a goal's end, in which an exception can be its cause
 DELAY = 0.25  # [s] after which a line has been read
-TRACEBACK = 40  # lines before the error in which its place is looked for
+TRACEBACK = 40  # lines: longer ones are cut
 
 
 def logged(record: Record, pattern: Pattern[str], until: float = math.inf, since: float = 0.0) -> bool:

@@ -88,7 +88,8 @@ def _begins_other(record: Record, goal: SentGoal, requested: float, end: float) 
     """Return whether, soon after a request [s], the robot stands still or the server tells of another goal."""
     others = [it for it in record.feedback if it.id != goal.id and requested < it.time < requested + SILENT]
     waiting = record.samples_between(requested + SILENT, end - ENDS)
-    return bool(others) or all(abs(it.v) < MOVING and abs(it.w) < TURNING for it in waiting)
+    stands = all(abs(it.v) < MOVING and abs(it.w) < TURNING for it in waiting)
+    return bool(others) or (bool(waiting) and stands)
 
 
 @check("states")

@@ -3,7 +3,9 @@
 import re
 from typing import Mapping, Pattern
 
-from ..handout import ACTION, ACTION_TYPE
+from aro_robocop_goto_as.names import ACTION_TYPE
+
+from ..handout import ACTION
 from ..record import Record
 
 MIN_DELAY = 1.0  # [s] a callback that waits once at the start makes messages wait for less

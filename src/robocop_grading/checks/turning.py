@@ -93,7 +93,7 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
     if len(driving) > MAX_WRONG * len(situations):
         command, angle = driving[0]
         cause = "The robot drives while it turns; the handout wants one or the other"
-        if sum(abs(it.command.w) < 1e-3 for it in driving) > 0.5 * len(driving):
+        if sum(abs(it.command.w) < MIN_SPEED for it in driving) > 0.5 * len(driving):
             cause = (
                 f"Once it has turned to the goal, the robot drives on at {angle:.2f} rad without turning again: "
                 f"compare angle_error with {TURN} in each iteration, because the heading changes while it drives"
@@ -103,7 +103,7 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
             )
         seen = f"linear.x {command.v:.2f} at {angle:.2f} rad"
         return Failed(NOT_DRIVING, seen, command.time, cause)
-    still = [it for it in situations if abs(it.command.w) < 1e-3]
+    still = [it for it in situations if abs(it.command.w) < MIN_SPEED]
     if len(still) > 0.5 * len(situations):
         command, angle = still[0]
         cause = f"The robot never turned: angle_error is {angle:.2f} rad but angular.z stayed 0"
@@ -133,7 +133,11 @@ def _never_turned(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fa
         return None
     distance, angle = goal.errors_at(start[-1])
     commands = [command for command in record.commands if goal.time <= command.time <= end]
-    if distance > NEAR and abs(angle) > limits.turn_beyond and not any(abs(command.w) > 1e-3 for command in commands):
+    if (
+        distance > NEAR
+        and abs(angle) > limits.turn_beyond
+        and not any(abs(command.w) > MIN_SPEED for command in commands)
+    ):
         reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
         cause = wrong_type(record, "/cmd_vel") or f"The robot never turned: angle_error is {angle:.2f} rad but {reason}"
         return Failed("angular.z towards the goal", "no command to turn", goal.time, cause, Kind.UNTURNED)

@@ -46,8 +46,6 @@ class Kind(enum.Enum):
     OTHER_POSITION = "another position"
     NOT_CANCELLED = "not cancelled"
     NO_REPORT = "no report"
-    EMPTY_REPORT = "a report without a state"
-    UNTRUE_REPORT = "a report of another state"
 
 
 @dataclass(frozen=True)
@@ -115,7 +113,7 @@ def check(plot: str, explain: Optional[Explain] = None) -> Callable[[Judge], Jud
     return register
 
 
-def ended(status: int) -> Kind:
+def kind_of_wrong_state(status: int) -> Kind:
     """The kind of a failure whose goal ended in this state instead of another one."""
     return {SUCCEEDED: Kind.SUCCEEDED, ABORTED: Kind.ABORTED, PREEMPTED: Kind.PREEMPTED}.get(status, Kind.OTHER_STATE)
 

@@ -155,15 +155,15 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
         seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
         plan = load(plan.path, seed)
         results = Results(out, {"plan": digest, "seed": seed, "grader": version})
-        group = Gradebook(folder, results, plan, hand_ins, chosen(args.again, hand_ins))
-        print(f"{group.count} handed in, {len(group.done)} of them already graded", flush=True)
+        gradebook = Gradebook(folder, results, plan, hand_ins, to_regrade(args.again, hand_ins))
+        print(f"{gradebook.count} handed in, {len(gradebook.done)} of them already graded", flush=True)
         print(f"scenarios: seed {seed}", flush=True)
         if not args.scheduler:
             open_sandbox(args.unsafe)
             lab_environment(share, state)
         workers = args.workers or len(os.sched_getaffinity(0))
-        grade(group, args.scheduler, workers, partial(work, plan=plan, results=results, unsafe=args.unsafe))
-    return group
+        grade(gradebook, args.scheduler, workers, partial(work, plan=plan, results=results, unsafe=args.unsafe))
+    return gradebook
 
 
 def _hand_ins(folder: Path) -> Dict[str, str]:
@@ -181,7 +181,7 @@ def main() -> None:
     args = arguments()
     interrupt_on_signal()
     try:
-        group = grade_class(args)
+        gradebook = grade_class(args)
     except RobocopError as error:
         print(f"robocop grade-class: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(WRONG_USE)
@@ -193,12 +193,12 @@ def main() -> None:
         os._exit(INTERRUPTED)  # dask's handlers at exit would wait for workers that had not started, and print why not
     finally:
         ignore_all()
-    out = group.results.folder
-    print("\n".join([*group.summary_lines(), f"table: {out / CSV}", f"overview: {out / HTML}"]))
-    sys.exit(1 if group.figures.not_judged else 0)
+    out = gradebook.results.folder
+    print("\n".join([*gradebook.summary_lines(), f"table: {out / CSV}", f"overview: {out / HTML}"]))
+    sys.exit(1 if gradebook.figures.not_judged else 0)
 
 
-def chosen(again: Optional[Sequence[str]], hand_ins: Collection[str]) -> Set[str]:
+def to_regrade(again: Optional[Sequence[str]], hand_ins: Collection[str]) -> Set[str]:
     """The names of the hand-ins to be graded again, all if no name is given; GradingSetupError for an unknown name."""
     names = hand_ins if again is not None and not again else [Path(name).name for name in again or ()]
     for name in {*names} - {*hand_ins}:
@@ -212,28 +212,26 @@ def class_seed(given: Optional[int], results: Path) -> int:
     return next(seed for seed in seeds if seed is not None)
 
 
-def grade(group: Gradebook, scheduler: str, workers: int, task: Callable[[Path], None]) -> None:
+def grade(gradebook: Gradebook, scheduler: str, workers: int, task: Callable[[Path], None]) -> None:
     """Grade the remaining hand-ins; if interrupted, write what is done, say so, and raise KeyboardInterrupt."""
-    group.write(running=bool(group.waiting))
+    gradebook.write(running=bool(gradebook.waiting))
     try:
-        if group.waiting:
+        if gradebook.waiting:
             from .cluster import connected, done, send_child_errors_to  # importing dask takes half a second
 
-            send_child_errors_to(group.results.folder / WORKERS_LOG)
-            paths = [group.folder / name for name in group.waiting]
+            send_child_errors_to(gradebook.results.folder / WORKERS_LOG)
+            paths = [gradebook.folder / name for name in gradebook.waiting]
             with connected(scheduler, min(workers, len(paths))) as client:
                 for path, problem in done(client, task, paths):
                     reraise_if_interrupted()
                     orphans.reap_adopted("bwrap")  # two of each hand-in
-                    print(group.add(path.name, problem), flush=True)
+                    print(gradebook.add(path.name, problem), flush=True)
     except KeyboardInterrupt:
-        group.add_stored()
+        gradebook.add_stored()
         with contextlib.suppress(OSError):  # the terminal may be closed
-            print(
-                f"\ninterrupted: {len(group.done)} of {group.count} graded; run the same command again to continue",
-                file=sys.stderr,
-            )
+            so_far = f"{len(gradebook.done)} of {gradebook.count} graded"
+            print(f"\ninterrupted: {so_far}; run the same command again to continue", file=sys.stderr)
         sys.stderr = open(os.devnull, "w")  # for what dask's objects report when they are deleted
         raise
     finally:
-        group.write(running=False)
+        gradebook.write(running=False)

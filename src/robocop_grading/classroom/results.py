@@ -14,8 +14,8 @@ from robocop_hosting import tree
 
 from ..checks import Failed
 from ..checks.verdict import without_figures
-from ..grades import CheckOutcome, CheckResult, Grade, total
-from ..plan import PARTS, Plan
+from ..grades import CheckOutcome, CheckResult, Grade
+from ..plan import PARTS, Plan, total
 from ..report.write import render
 from .summary import Summary
 
@@ -81,15 +81,20 @@ class Results:
         return {**self._made_with, "digest": digest}
 
     def keep(self, name: str, digest: str, report: Path, seconds: float) -> None:
-        """Store the report in a folder; a concurrent reader sees either the old or the new one, but no mixture."""
+        """Store the report in a folder; a concurrent reader sees the old one or the new one, never a mixture.
+
+        For a moment between two renames, a reader sees none.
+        """
         new, final = Path(tempfile.mkdtemp(prefix=".new-", dir=self.folder)), self.folder / name
         new.chmod(0o755)
         shutil.copytree(report, new, dirs_exist_ok=True)
         stamp = {"made_from": self._from(digest), "seconds": round(seconds, 1)}
         (new / STAMP).write_text(json.dumps(stamp, indent=1))
+        old = new.with_name(f"{new.name}.old")
         if final.exists():
-            tree.remove(final)
+            os.rename(final, old)
         os.rename(new, final)
+        tree.remove(old)
 
     def read(self, name: str) -> StoredGrade:
         """The result that is stored for a hand-in."""

@@ -65,10 +65,11 @@ def class_folder(folder: Path, reserved: Collection[str]) -> Path:
 
 def _is_packed_export(path: Path) -> bool:
     """Return whether it is a zip with hand-ins that are named by a platform."""
-    if not zipfile.is_zipfile(path):
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return any(_is_named_by_platform(Path(part)) for name in archive.namelist() for part in Path(name).parts)
+    except Exception:  # zipfile documents no list of what it raises for a file that is no zip, or a damaged one
         return False
-    with zipfile.ZipFile(path) as archive:
-        return any(_is_named_by_platform(Path(part)) for name in archive.namelist() for part in Path(name).parts)
 
 
 def _is_named_by_platform(path: Path) -> bool:

@@ -46,6 +46,7 @@ def write(grade: Grade, plan: Plan, records: Records, folder: Path, place: Optio
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1, default=lambda kind: kind.value))
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
+    (folder / faults.FILE).unlink(missing_ok=True)  # an earlier report's
     if grade.tracebacks:
         faults.keep(grade.tracebacks, folder)
     # An HTML block without empty lines, so that GitHub does not read texts of the submission as Markdown.

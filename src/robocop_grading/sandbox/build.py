@@ -79,9 +79,11 @@ def build(
     folder.parent.mkdir(parents=True, exist_ok=True)
     unfinished.touch()
     sizes: Dict[str, int] = {}  # bytes of each file
+    copied = 0  # bytes
     names = " and ".join(sources)
 
     def copy(path: str, target: str) -> None:
+        nonlocal copied
         status = os.stat(path)
         if not stat.S_ISREG(status.st_mode):
             raise GradingError(f"{path}: expected an ordinary file")
@@ -89,7 +91,8 @@ def build(
         if is_ungraded(path, size):
             return
         sizes[path] = size
-        if sum(sizes.values()) > MAX_SOURCE:
+        copied += size
+        if copied > MAX_SOURCE:
             largest = max(sizes, key=lambda it: sizes[it])
             raise GradingError(
                 f"{names}: expected packages of less than {MAX_SOURCE // MB} MB; the largest file in it is "
@@ -97,10 +100,7 @@ def build(
             )
         shutil.copy2(path, target)
 
-    try:
-        copy_sources(sources, folder, sandbox is None, copy)
-    except (OSError, shutil.Error) as error:
-        raise GradingError(f"{names}: can't be copied: {error}") from error
+    copy_sources(sources, folder, sandbox is None, copy)
     links = [] if sandbox is None else list(_links_elsewhere(folder / "src", sources))
     try:
         environment = make(folder, names, underlay, runner_in(sandbox, folder, reads))

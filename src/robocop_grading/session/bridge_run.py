@@ -17,10 +17,11 @@ from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
 
 from .. import record as rec
 from ..handout import ACTION, CLICKS
+from ..plan import TICK
 from ..sites import SITE
 from .goals import Goals
 from .job import Job
-from .run import TICK, Run
+from .run import Run
 from .stage import Stage
 
 START_TIMEOUT = 20.0  # [s] for the node's first connection
@@ -56,7 +57,7 @@ class BridgeRun(Run):
     def __init__(self, job: Job, stage: Stage) -> None:
         super().__init__(job, stage)
         self.accepts = True
-        self.topics.listen(f"{ACTION}/cancel", GoalID, self._on_cancel)
+        self.topics.subscribe(f"{ACTION}/cancel", GoalID, self._on_cancel)
         self.topics.advertise(CLICKS, PoseStamped)
         self.server: Optional[Goals] = None
         self.reports: Set[str] = set()  # topics
@@ -75,28 +76,24 @@ class BridgeRun(Run):
         for name, kind in (("result", GoToPositionActionResult), ("feedback", GoToPositionActionFeedback)):
             self.topics.advertise(f"{ACTION}/{name}", kind)
         self.topics.advertise(f"{ACTION}/status", GoalStatusArray, latch=True)
-        self.topics.listen(f"{ACTION}/goal", GoToPositionActionGoal, self._on_goal)
+        self.topics.subscribe(f"{ACTION}/goal", GoToPositionActionGoal, self._on_goal)
         self.server = Goals(self.topics.publish, lambda: self.stage.stamp)
-        self.stage.digest()
+        self.stage.run_node()
 
     def _on_goal(self, message: GoToPositionActionGoal) -> None:
         assert self.server is not None
         message.goal_id = self.server.identified(message.goal_id)
         position, name = message.goal.position, message.goal_id.id
         self.add("goals", rec.SentGoal(name, position.x, position.y, self.stage.now, ""))
-        self._note_if_cancelled(message.goal_id)
+        stamp = message.goal_id.stamp.to_sec()
+        # At a tick, requests are handled first.
+        if any(cancel.id == name or 0.0 < stamp <= cancel.stamp for cancel in self.entries["cancels"]):
+            self.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
         if self.server.add(message):
             self.add("statuses", rec.Status(self.stage.now, name, rec.PENDING))
-            self._note_if_cancelled(message.goal_id)
             if self.accepts:
                 self.server.accept(name)
                 self.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
-
-    def _note_if_cancelled(self, goal_id: GoalID) -> None:
-        """Record a goal as PREEMPTED if a cancel request has come for it: at a tick, requests are handled first."""
-        stamp = goal_id.stamp.to_sec()
-        if any(cancel.id == goal_id.id or 0.0 < stamp <= cancel.stamp for cancel in self.parts["cancels"]):
-            self.add("statuses", rec.Status(self.stage.now, goal_id.id, rec.PREEMPTED))
 
     def _on_cancel(self, message: GoalID) -> None:
         """Preempt the goals that a cancel request is for.
@@ -108,7 +105,7 @@ class BridgeRun(Run):
         if self.server is None:
             return
         self.server.request_cancel(message)
-        for goal in self.parts["goals"]:
+        for goal in self.entries["goals"]:
             known = self.server.running().get(goal.id)
             everything = not message.id and not message.stamp and goal.time < self.stage.now - 1e-6
             earlier = bool(message.stamp) and known is not None and known.stamp <= message.stamp
@@ -133,31 +130,31 @@ class BridgeRun(Run):
         message = PoseStamped()
         message.header.frame_id, message.header.stamp = frame, self.stage.stamp
         message.pose.position.x, message.pose.position.y, message.pose.orientation.w = x, y, 1.0
-        count = len(self.parts["goals"])
+        count = len(self.entries["goals"])
         self.topics.publish(CLICKS, message)
-        self.stage.digest()  # what the bridge does at once takes no simulated time
+        self.stage.run_node()  # what the bridge does at once takes no simulated time
         for _ in range(round(REACTION_TIME / TICK)):
-            if len(self.parts["goals"]) > count:
+            if len(self.entries["goals"]) > count:
                 break
             self.tick()
-        self.stage.digest()  # its client has learned the goal's state before time continues
+        self.stage.run_node()  # its client has learned the goal's state before time continues
 
     def _subscribe_to_reports(self) -> None:
         """Record published states like logged lines; their topics may appear at any time."""
         reports = [name for name, topic in self.topics.published.items() if topic.type in STATUS_TYPES]
         for name in sorted(it for it in reports if not self.topics.listens_to(it)):
             kind = roslib.message.get_message_class(self.topics.published[name].type)
-            self.topics.listen(name, kind, self._on_line, partial(_text, f"published on {name}"))
+            self.topics.subscribe(name, kind, self._on_line, partial(_text, f"published on {name}"))
             self.reports.add(name)
-            self.stage.digest()
+            self.stage.run_node()
 
     def tick(self) -> None:
         """Run one control tick; then publish the server's goals if their status is due."""
         super().tick()
         self._ticks += 1
         if self.server is not None and self._ticks % STATUS_TICKS == 0:
-            self.server.tell()
-        self.stage.digest()  # its client has learned the state before time continues
+            self.server.publish_status()
+        self.stage.run_node()  # its client has learned the state before time continues
 
     # -- scenarios, in this order --
 
@@ -165,9 +162,12 @@ class BridgeRun(Run):
         """Start the bridge and send it a click while there is no server."""
         self.begin("no_server")
         self.launch()
-        self.wait_for(lambda: self.topics.reaches(CLICKS) or self.topics.hears(f"{ACTION}/cancel"), START_TIMEOUT)
+        self.wait_for(
+            lambda: self.topics.node_subscribes_to(CLICKS) or self.topics.node_publishes(f"{ACTION}/cancel"),
+            START_TIMEOUT,
+        )
         self.settle(1.0)
-        if self.topics.reaches(CLICKS):
+        if self.topics.node_subscribes_to(CLICKS):
             self._send_click("odom", 0.5, 0.1)
         self.settle(3.0)
         self.marks["own_server"] = float(f"{ACTION}/result" in self.topics.published)
@@ -185,8 +185,8 @@ class BridgeRun(Run):
         self._finish_goals()
         self.settle(0.5)
         self.marks["clicked"] = self.stage.now
-        self.marks["listeners"] = float(self.topics.reaches(CLICKS))
-        self.marks["clients"] = float(self.topics.hears(f"{ACTION}/goal"))
+        self.marks["listeners"] = float(self.topics.node_subscribes_to(CLICKS))
+        self.marks["clients"] = float(self.topics.node_publishes(f"{ACTION}/goal"))
         limits = self.plan.limits
         first = (BEFORE, limits.status_span + limits.status_period / 2.0, rec.SUCCEEDED, 6.0)
         for click, active, status, after in (first, *LATER_GOALS):
@@ -195,12 +195,12 @@ class BridgeRun(Run):
             self._finish_goals(status)
             self._watch_reports(after)
         self._stop_watching()
-        self.finish("click", **self.names("/goal"))
+        self.finish("click", **self.action_fields("/goal"))
 
     def _has_client(self) -> bool:
         """Return whether the node hears of clicks, sends goals, and hears of their status and result."""
-        heard = all(self.topics.reaches(name) for name in (CLICKS, f"{ACTION}/status", f"{ACTION}/result"))
-        return heard and self.topics.hears(f"{ACTION}/goal")
+        heard = all(self.topics.node_subscribes_to(name) for name in (CLICKS, f"{ACTION}/status", f"{ACTION}/result"))
+        return heard and self.topics.node_publishes(f"{ACTION}/goal")
 
     def _watch_reports(self, seconds: float) -> None:
         """Let time pass, and record what is published on topics that appear meanwhile."""

@@ -29,9 +29,9 @@ class Goals:
         self._ended: Dict[str, rospy.Time] = {}
         self._last_cancel = rospy.Time()
         self._made = 0  # ids
-        self.tell()
+        self.publish_status()
 
-    def tell(self) -> None:
+    def publish_status(self) -> None:
         """Publish the states of all goals."""
         now = self._stamp()
         for name, ended in list(self._ended.items()):
@@ -67,7 +67,7 @@ class Goals:
     def accept(self, name: str) -> None:
         """Make a goal ACTIVE."""
         self._statuses[name].status, self._statuses[name].text = GoalStatus.ACTIVE, ACCEPTED
-        self.tell()
+        self.publish_status()
         feedback = GoToPositionActionFeedback(
             status=self._statuses[name], feedback=GoToPositionFeedback(1.0, 0.0, "on the way")
         )
@@ -81,7 +81,7 @@ class Goals:
             before = bool(request.stamp) and status.goal_id.stamp <= request.stamp
             if (everything or before or request.id == status.goal_id.id) and status.status in REQUESTED:
                 status.status = REQUESTED[status.status]
-                self.tell()
+                self.publish_status()
         if request.id and request.id not in self._statuses:
             self._statuses[request.id] = GoalStatus(request, GoalStatus.RECALLING, "")
             self._ended[request.id] = self._stamp()
@@ -103,4 +103,4 @@ class Goals:
         message = GoToPositionActionResult(status=self._statuses[name], result=result)
         message.header.stamp = self._stamp()
         self._publish(f"{ACTION}/result", message)
-        self.tell()
+        self.publish_status()

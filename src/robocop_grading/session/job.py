@@ -30,13 +30,13 @@ _descriptor = -1
 
 
 def begin_to_tell() -> None:
-    """From now on, print() writes to standard error, and tell() writes to the former standard output."""
+    """From now on, print() writes to standard error, and send_to_grader() writes to the former standard output."""
     global _descriptor
     sys.stdout.flush()
     _descriptor = os.dup(1)
     os.dup2(2, 1)
 
 
-def tell(line: str) -> None:
+def send_to_grader(line: str) -> None:
     """Send one line."""
     os.write(_descriptor, f"{' '.join(line.splitlines())}\n".encode())

@@ -6,9 +6,9 @@ from pathlib import Path
 from ..errors import GraderLostError
 from ..record import read
 from .bridge_run import BridgeRun
-from .job import Job, begin_to_tell, tell
+from .job import Job, begin_to_tell, send_to_grader
 from .run import Run
-from .server import ServerRun
+from .server_run import ServerRun
 from .stage import Stage
 
 
@@ -20,7 +20,7 @@ def main() -> None:
     except GraderLostError as error:
         sys.exit(str(error))
     except OSError as error:  # a full disk, for example: nothing that a node can bring about
-        tell(f"error {error}")
+        send_to_grader(f"error {error}")
         sys.exit(1)
 
 

@@ -106,7 +106,7 @@ class Node:
         self._output.close()
         self._channel.close()
 
-    def go_on(self, until_ns: int, clock_ns: int, meanwhile: Callable[[], object]) -> None:
+    def run_until(self, until_ns: int, clock_ns: int, meanwhile: Callable[[], object]) -> None:
         """Let the node live until a simulated time [ns], and handle everything that it does until then.
 
         `clock_ns`: the time on /clock, which the node's loops see when all messages are handled. `meanwhile` is
@@ -121,16 +121,16 @@ class Node:
             self._channel.send(wire.TOPIC, pickle.dumps(header))
         self._channel.send(wire.GO, wire.go(until_ns - self._started_ns, clock_ns, messages))
         meanwhile()
-        self._live(until_ns - self._started_ns)
+        self._wait_for_done(until_ns - self._started_ns)
         self._topics.handle_arrived()
         self._output.pass_on()
 
-    def _live(self, until_ns: int) -> None:
+    def _wait_for_done(self, until_ns: int) -> None:
         """Handle what the node sends, until it says DONE for this time, or has ended."""
         idle, still, silent = self._guard.idle, self._guard.still, 0.0
         for looks in itertools.count(1):
             has_more = self._has_more()
-            if self._has_lived(until_ns):
+            if self._is_done(until_ns):
                 break
             if not has_more and self._has_ended():
                 self._finish()
@@ -147,7 +147,7 @@ class Node:
                 break
         self._still += silent
 
-    def _has_lived(self, until_ns: int) -> bool:
+    def _is_done(self, until_ns: int) -> bool:
         """Handle the frames that have come; return whether the node said DONE for this time."""
         for kind, body in self._channel.frames():
             if kind == wire.DONE and len(body) == wire.TIMES.size:
@@ -166,7 +166,7 @@ class Node:
             elif kind == wire.CALL:
                 self._channel.send(wire.REPLY, self._services.call(*wire.split(body)))
             elif kind == wire.TOPICS:
-                self._topics.tell(body)
+                self._topics.update_node_topics(body)
             elif kind == wire.CHILD:
                 self._topics.programs.add(CHILD)
             else:
@@ -186,7 +186,7 @@ class Node:
         return self._channel in ready and self._channel.read()
 
     def _has_ended(self) -> bool:
-        self._output.read()  # it may wait for that
+        self._output.read()  # the node may be blocked on a full pipe
         return self._process.poll() is not None
 
     def _finish(self) -> None:

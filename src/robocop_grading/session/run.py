@@ -13,18 +13,17 @@ from aro_robocop_goto_as.ros import convert
 
 from .. import record as rec
 from ..handout import ACTION
-from ..plan import Block
+from ..plan import TICK, Block
 from ..record import Record
 from ..sites import ORIGIN
-from .job import Job, tell
+from .job import Job, send_to_grader
 from .node import Node, Spent
 from .services import Services
 from .stage import Stage
 from .topics import NodeTopic
 
-TICK = 0.1  # [s]
-MAX_ENTRIES = 50  # of each kind at one tick, and
-MAX_LINES = 20_000  # in one record, as a traceback comes at once
+MAX_ENTRIES = 50  # of each kind at one tick
+MAX_LINES = 20_000  # in one record; as many at one tick, as a traceback comes at once
 
 
 class Run:
@@ -35,14 +34,14 @@ class Run:
         self.services = Services(stage.sim)
         self.ended: Set[str] = set()
         self.known: Dict[str, int] = {}  # goal -> status
-        self.parts: DefaultDict[str, List[Any]] = defaultdict(list)  # by field of the record
+        self.entries: DefaultDict[str, List[Any]] = defaultdict(list)  # by field of the record
         self._before: DefaultDict[str, int] = defaultdict(int)  # how many of them there were before this tick
         self.marks: Dict[str, float] = {}
         self.death_recorded = False
         self._spent = Spent()
         self._started = Pose2D()  # odom_from_footprint when the node was started
-        self.topics.listen("/cmd_vel", Twist, self._on_command)
-        self.topics.listen("/rosout", Log, self._on_log)
+        self.topics.subscribe("/cmd_vel", Twist, self._on_command)
+        self.topics.subscribe("/rosout", Log, self._on_log)
 
     def scenarios(self) -> None:
         """Run the scenarios that the plan's checks examine."""
@@ -50,11 +49,11 @@ class Run:
 
     def announce(self, name: str) -> None:
         """Tell the grader which scenario is the next one."""
-        tell(f"begin {name}")
+        send_to_grader(f"begin {name}")
 
     def begin(self, name: str, site: Pose2D = ORIGIN, blocks: Sequence[Block] = (), odd_scan: bool = False) -> None:
         """Start a scenario's record and bag, with the robot at rest at its site."""
-        self.parts = defaultdict(list)
+        self.entries = defaultdict(list)
         self._before.clear()
         self.marks = {}
         self.stage.bag.open(self.job.out / f"{self.job.part}-{name}.bag")
@@ -64,7 +63,7 @@ class Run:
     def finish(self, name: str, **more: Any) -> Record:
         """Write the scenario's record, and return it."""
         self.stage.bag.close()
-        parts: Dict[str, Any] = {part: tuple(entries) for part, entries in self.parts.items()}
+        fields: Dict[str, Any] = {field: tuple(entries) for field, entries in self.entries.items()}
         others = self.topics.other_types() if self.stage.node is not None else ()
         record = Record(
             name,
@@ -74,18 +73,18 @@ class Run:
             other_types=others,
             programs=tuple(sorted(self.topics.programs)),
             delays=tuple(sorted(self.topics.delays.items())),
-            **parts,
+            **fields,
             **more,
         )
         rec.write(record, self.job.out / f"{self.job.part}-{name}.record")
         return record
 
-    def add(self, part: str, entry: Any) -> None:
+    def add(self, field: str, entry: Any) -> None:
         """Record an entry; if there are very many at one tick, only the first MAX_ENTRIES are recorded."""
-        if len(self.parts[part]) - self._before[part] < MAX_ENTRIES:
-            self.parts[part].append(entry)
+        if len(self.entries[field]) - self._before[field] < MAX_ENTRIES:
+            self.entries[field].append(entry)
 
-    def names(self, suffix: str) -> Dict[str, Any]:
+    def action_fields(self, suffix: str) -> Dict[str, Any]:
         """Fields of a record: the node's action servers or clients, and topics that the node waits for in vain.
 
         `suffix`: the end of the name of a topic that these servers or clients publish, such as /result.
@@ -98,7 +97,8 @@ class Run:
         }
         return {
             "servers": tuple(name[: -len(suffix)] for name in found),
-            "types": tuple(topic.type[: 6 - len(kind)] for topic in found.values()),
+            # GoToPositionActionResult -> GoToPositionAction
+            "types": tuple(topic.type[: -len(suffix[1:])] for topic in found.values()),
             "unpublished": tuple(self.topics.unpublished()),
         }
 
@@ -132,8 +132,8 @@ class Run:
 
     def tick(self) -> None:
         """One control tick."""
-        for part, entries in self.parts.items():
-            self._before[part] = len(entries)
+        for field, entries in self.entries.items():
+            self._before[field] = len(entries)
         self.add("samples", self.stage.tick())
         self._record_death()
 
@@ -159,7 +159,7 @@ class Run:
             ("result", GoToPositionActionResult, self._on_result),
             ("status", GoalStatusArray, self._on_status),
         ):
-            self.topics.listen(f"{ACTION}/{name}", kind, handler)
+            self.topics.subscribe(f"{ACTION}/{name}", kind, handler)
 
     def _on_command(self, message: Twist) -> None:
         twist = convert.from_twist_msg(message)
@@ -189,6 +189,6 @@ class Run:
         self._on_line(f"[{level}] {message.msg}")
 
     def _on_line(self, text: str) -> None:
-        lines = self.parts["lines"]
+        lines = self.entries["lines"]
         if len(lines) < MAX_LINES:
             lines.append(rec.Line(self.stage.now, text))

@@ -113,13 +113,13 @@ class Stage:
         """Advance by one control tick and publish what is due; return the true state at the tick's end."""
         end = self.sim.steps + STEPS_PER_TICK
         while self.sim.steps < end:
-            # Until the first step that is not before the time at which the node does something by itself.
+            # Up to the first step at or after the time at which the node does something by itself.
             until = end if self.node is None else min(end, -(-self.node.next_ns * self.sim.rate // NANOSECONDS))
             due = self.sim.advance(self._subscriptions(), max(1, until - self.sim.steps))
             if due is not None:
                 self._publish(due)
             if self.node is not None and self.node.next_ns <= self.sim.stamp_ns:
-                self.digest()
+                self.run_node()
         return self.sample()
 
     def pass_transform(self) -> None:
@@ -127,20 +127,20 @@ class Stage:
         self.sim.advance({}, self.sim.rate // PARAMS.sensors.odometry.odom_rate // 2)
         self.clock_ns = self.sim.stamp_ns
 
-    def digest(self, meanwhile: Callable[[], object] = lambda: None) -> None:
-        """Let the node do what it does until now; `meanwhile` is called once, while it works."""
+    def run_node(self, meanwhile: Callable[[], object] = lambda: None) -> None:
+        """Let the node process everything up to the present simulated time; `meanwhile` is called meanwhile, once."""
         if self.node is not None:
-            self.node.go_on(self.sim.stamp_ns, self.clock_ns, meanwhile)
+            self.node.run_until(self.sim.stamp_ns, self.clock_ns, meanwhile)
         else:
             meanwhile()
 
     def _subscriptions(self) -> Subscriptions:
         """The node's; odometry always, for the bag."""
-        wanted = {sensor for topic, sensor in self._sensors.items() if self.topics.reaches(topic)}
+        wanted = {sensor for topic, sensor in self._sensors.items() if self.topics.node_subscribes_to(topic)}
         return {sensor: [0] for sensor in sorted({ODOM, *wanted})}
 
     def _publish(self, due: Due) -> None:
-        """What is due on a step to the submission and the bag."""
+        """Send what is due on a step to the submission, and write it to the bag."""
         if self.odd_scan and due.of(SCAN):
             ranges = self.sim.sensors.lidar.ranges
             ranges[0, ::ZERO_EVERY], ranges[0, ::NAN_EVERY] = 0.0, np.nan
@@ -150,10 +150,10 @@ class Stage:
                 self.topics.send(topic, data)
         if due.clock:
             self.clock_ns = self.sim.stamp_ns
-        self.digest(partial(self.bag.write_step, self.sim.stamp_ns, messages))
+        self.run_node(partial(self.bag.write_step, self.sim.stamp_ns, messages))
 
     def _publish_frames(self) -> None:
-        """map -> odom has jumped."""
+        """Publish the static frames anew, as map -> odom has jumped."""
         frames = self._static_frames(Pose2D())
         frames.transforms += self._links()
         self.topics.publish("/tf_static", frames)

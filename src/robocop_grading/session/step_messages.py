@@ -36,7 +36,7 @@ class StepMessages:
     def of(self, due: Due) -> List[StepMessage]:
         """The messages that are due on the simulator's present step."""
         if due not in self._prepared:
-            messages = [(topic.name, topic.data_class, message) for topic, message in self._topics.due(due)]
+            messages = [(topic.name, topic.data_class, message) for topic, message in self._topics.messages_due(due)]
             messages += [self._truth] if due.of(ODOM) else []
             messages += [self._clock] if due.clock else []
             packed = [message for *_, message in messages if isinstance(message, PackedMessage)]

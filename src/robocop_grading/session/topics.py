@@ -112,7 +112,7 @@ class Topics:
         self._sent[name] = _Sent(kind, header(kind, topic=name, latching=str(int(latch))), latch)
         self._new.append(self._sent[name].header)
 
-    def listen(self, name: str, kind: Any, handler: Handler, of: Callable[[Any], Any] = trimmed) -> None:
+    def subscribe(self, name: str, kind: Any, handler: Handler, of: Callable[[Any], Any] = trimmed) -> None:
         """Have `handler` called with each message on a topic; `of` reduces a message to the parts that are kept."""
         self._heard[name] = _Heard(kind, header(kind, topic=name), handler, of)
         self._new.append(self._heard[name].header)
@@ -139,17 +139,17 @@ class Topics:
         sent = self._sent[name]
         if sent.is_latched:
             sent.last = data
-        if sent.is_latched or self.reaches(name):
+        if sent.is_latched or self.node_subscribes_to(name):
             self._outgoing.append((name, data))
 
     # -- who is connected --
 
-    def reaches(self, name: str) -> bool:
+    def node_subscribes_to(self, name: str) -> bool:
         """Return whether the node gets what the grader publishes on a topic."""
         sent, used = self._sent.get(name), self.subscribed.get(name)
         return sent is not None and used is not None and used.checksum in ("*", sent.kind._md5sum)
 
-    def hears(self, name: str) -> bool:
+    def node_publishes(self, name: str) -> bool:
         """Return whether the grader gets what the node publishes on a topic that it listens to."""
         return name in self.published and self.published[name].checksum == self._heard[name].kind._md5sum
 
@@ -183,7 +183,7 @@ class Topics:
         self._new, self._outgoing = [], []
         return new, outgoing
 
-    def tell(self, body: bytes) -> None:
+    def update_node_topics(self, body: bytes) -> None:
         """Take the node's list of its topics; GraderLostError if the list can't be read."""
         try:
             told: Mapping[str, Any] = json.loads(body)

@@ -6,6 +6,7 @@ import pytest
 from grading_records import GOAL, PLAN, RIGHT, changed
 
 from robocop_grading.attempts import counting
+from robocop_grading.checks import CHECKS
 from robocop_grading.plan import AGAIN
 
 STUCK = changed(results=(), problem="the robot made no progress for 8 s, and the goal did not end")
@@ -33,6 +34,17 @@ def test_attempt_that_counts(others, again, counts, told):
     assert chosen["right"] == replace(again if counts else STUCK, name="right")
     assert counted == (["right"] if counts else [])
     assert told in "".join(said) and bool(said) == bool(told)
+
+
+def test_exception_in_a_check_leaves_the_choice_to_the_other_checks(monkeypatch):
+    check = CHECKS["reaches_goal"]
+    monkeypatch.setitem(CHECKS, "reaches_goal", replace(check, judge=lambda record, limits: 1 / 0))
+    records = {
+        "left": RIGHT,
+        "right": replace(STUCK, name="right"),
+        f"right{AGAIN}": replace(RIGHT, name=f"right{AGAIN}"),
+    }
+    assert set(counting(PLAN, records)[0]) == {"left", "right"}
 
 
 def test_repeated_scenarios_are_told_in_one_sentence():

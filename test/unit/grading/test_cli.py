@@ -1,5 +1,6 @@
 """robocop grade: where a report goes, which checks run, and what each exit status means."""
 
+import errno
 from pathlib import Path
 
 import pytest
@@ -57,6 +58,15 @@ def status(error, tmp_path, monkeypatch, capsys, *arguments):
 )
 def test_exit_status_says_who_can_correct_what(error, expected, tmp_path, monkeypatch, capsys):
     assert status(error, tmp_path, monkeypatch, capsys)[0] == expected
+
+
+def test_a_full_disk_does_not_make_an_error_of_the_grader_a_grade(tmp_path, monkeypatch, capsys):
+    def full(_args):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(cli, "_kept_traceback", full)
+    code, printed = status(ZeroDivisionError(), tmp_path, monkeypatch, capsys)
+    assert code == 3 and "could not be graded: ZeroDivisionError()" in printed
 
 
 @pytest.mark.parametrize(

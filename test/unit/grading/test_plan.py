@@ -59,6 +59,8 @@ def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None
         ("name: right", "name: a/b", "expected letters, digits and _"),
         (LEFT, "- {cancel: true}", "cancel: expected an earlier goal in the script"),
         (LEFT, "- {ends: SUCCEEDED}", "one of goal, cancel and place"),
+        (LEFT, "- {goal: [1, 0]}", "expected `ends`, or `for` of 0.1 s or more, after a goal"),
+        (LEFT, "- {goal: [1, 0], ends: SUCCEEDED, for: 1}", "expected `ends`, or `for` of 0.1 s or more"),
         (f"script:\n      {LEFT}", "script: []", "script: expected steps, got none"),
         ("  - [1.6..1.8, 0.2, -0.35, 1.0]", "  - [1.6..1.8, 0.2]", "far: pushes: expected 4 numbers"),
         ("packages:", "packages: {pypi: [--index-url=http://here]}", "expected the name of a package, got '--index"),

@@ -37,7 +37,7 @@ def test_node_has_all_that_roslaunch_resolves(tmp_path: Path) -> None:
     (node,) = file.nodes
     assert node.arguments == ["--speed", "0.2", "two words", "old:=new", "odom_in:=/odom"]
     assert node.variables == {"LEVEL": "3", "ROS_NAMESPACE": "/robot"}
-    assert (node.place, node.not_done) == ("launch/inner.xml, line 2", ["cwd='node'"])
+    assert (node.location, node.not_done) == ("launch/inner.xml, line 2", ["cwd='node'"])
     assert file.parameters == {"/robot/list": [1, 2], "/robot/a/gain": 2.5}
     assert loaded(tmp_path, "fast:=false").nodes[0].arguments[1] == "0.1"
 

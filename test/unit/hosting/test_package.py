@@ -8,7 +8,7 @@ import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
 from robocop_hosting.errors import HostingError
-from robocop_hosting.package import find_package, names_gazebo, started
+from robocop_hosting.package import find_package, mentions_gazebo, read_launch_plan
 from robocop_hosting.workspace import run_plain
 
 
@@ -139,7 +139,7 @@ def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path: Path) -> None:
         "scripts/goto.py": "move_base_simple",
     }
     package = find_package(str(tree(tmp_path / "ws" / "src" / LAB, files)))
-    found = started(package, tmp_path / "ws", dict(os.environ), run_plain)
+    found = read_launch_plan(package, tmp_path / "ws", dict(os.environ), run_plain)
     place = "launch/robocop_goto_as.launch, line"
     assert {part: choice.path.name for part, choice in found.choices.items()} == {
         "server": "robocop_goto_as.py",
@@ -165,7 +165,7 @@ def test_packages_are_known_that_the_launch_file_starts_itself_or_by_another_unl
     }
     package = find_package(str(tree(tmp_path / "src" / LAB, files)))
     for words, starts in (([], {"gazebo_ros", "aro_sim"}), (["all:=0"], {"aro_sim"})):
-        found = started(package, tmp_path, dict(os.environ), run_plain, words)
+        found = read_launch_plan(package, tmp_path, dict(os.environ), run_plain, words)
         assert {node.package for node in found.others} == starts
         assert found.starts_gazebo == ("gazebo_ros" in starts)
 
@@ -181,7 +181,7 @@ def test_launch_file_that_needs_gazebo_is_known_when_another_package_is_missing(
     }
     package = find_package(str(tree(tmp_path, files)))
     problem = "launch/{}.launch, line 1: roslaunch can't read it: package xacro not found"
-    known = {name for name in ("world", "messages") if names_gazebo(package, problem.format(name))}
+    known = {name for name in ("world", "messages") if mentions_gazebo(package, problem.format(name))}
     assert known == {"world"}
 
 
@@ -197,6 +197,6 @@ def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path: Path)
         "scripts/second.py": "'move_base_simple'  # 2",
     }
     package = find_package(str(tree(tmp_path / "src" / LAB, files)))
-    found = started(package, tmp_path, dict(os.environ), run_plain)
+    found = read_launch_plan(package, tmp_path, dict(os.environ), run_plain)
     assert found.choices["bridge"].path.name == "second.py"
     assert (found.parameters, found.notes) == ({"/n/of": "robocop_goto_as.py"}, [])

@@ -11,9 +11,16 @@ from hosted_packages import LAB, MANIFEST, tree
 from aro_robocop_goto_as.names import PACKAGE
 from robocop_hosting.errors import HostingError
 from robocop_hosting.launch_file import LaunchNode
-from robocop_hosting.package import Started, find_package
+from robocop_hosting.package import LaunchPlan, find_package
 from robocop_hosting.scripts import Choice
-from robocop_hosting.sim_with import instead_of_gazebo, launch_file, make_startable, own_folder, parsed, sort_arguments
+from robocop_hosting.sim_with import (
+    instead_of_gazebo,
+    lock_free_folder,
+    make_startable,
+    parsed,
+    sort_arguments,
+    write_launch_file,
+)
 
 PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
 
@@ -45,19 +52,19 @@ def test_launch_file_that_starts_gazebo_is_named_with_what_to_start_instead(tmp_
 def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, package: str, script: str) -> None:
     hosted = find_package(str(tree(tmp_path, {"package.xml": MANIFEST.format(LAB), "x.launch": "<launch/>"})))
     for others in ([], [LaunchNode(package, script, "sim", "x.launch")]):
-        written = launch_file(hosted, tmp_path, {}, Started({}, {}, (), others)).read_text()
+        written = write_launch_file(hosted, tmp_path, {}, LaunchPlan({}, {}, (), others)).read_text()
         assert ("aro_sim" in written) != bool(others)
 
 
 def test_launch_file_gets_its_arguments_and_scripts_without_one_become_the_labs_nodes(tmp_path: Path) -> None:
     package = find_package(str(tree(tmp_path / "src" / LAB, PAIR)))
-    included = ElementTree.parse(launch_file(package, tmp_path, {"speed": "<1"}, Started({}, {}, ()))).findall(
+    included = ElementTree.parse(write_launch_file(package, tmp_path, {"speed": "<1"}, LaunchPlan({}, {}, ()))).findall(
         "include"
     )
     assert included[-1].attrib == {"file": str(tmp_path / "src" / LAB / "a.launch")}
     assert [argument.attrib for argument in included[-1]] == [{"name": "speed", "value": "<1"}]
     scripts = {part: Choice(Path(f"{part}.py"), None, False, []) for part in ("server", "bridge")}
-    written = launch_file(replace(package, launch_file=None), tmp_path, {}, Started(scripts, {}, ()))
+    written = write_launch_file(replace(package, launch_file=None), tmp_path, {}, LaunchPlan(scripts, {}, ()))
     assert [
         (node.get("pkg"), node.get("type"), node.get("name")) for node in ElementTree.parse(written).iter("node")
     ] == [
@@ -92,4 +99,4 @@ def test_script_that_roslaunch_can_not_start_is_made_executable_or_refused_with_
 
 
 def test_two_that_run_the_same_package_at_once_build_in_different_folders(tmp_path: Path) -> None:
-    assert [own_folder(tmp_path / "with", "lab").name for _ in range(3)] == ["lab", "lab-1", "lab-2"]
+    assert [lock_free_folder(tmp_path / "with", "lab").name for _ in range(3)] == ["lab", "lab-1", "lab-2"]

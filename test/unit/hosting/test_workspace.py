@@ -1,10 +1,12 @@
 """What is shown of a build that failed."""
 
+import os
 from pathlib import Path
 
 import pytest
 
-from robocop_hosting.workspace import build_once, error_of, folder_for
+from robocop_hosting.errors import HostingError
+from robocop_hosting.workspace import build_once, copy_sources, error_of, folder_for
 
 WARNING = """-- catkin 0.8.10
 CMake Warning at /usr/share/genmsg/cmake/genmsg-extras.cmake:49 (message):
@@ -57,3 +59,16 @@ def test_a_changed_renamed_or_new_source_file_is_built_in_another_folder(tmp_pat
     (source / "three").touch()
     folders.append(folder_for(tmp_path, source))
     assert len({*folders}) == 4 and folders[0] == folders[1]
+
+
+def test_sources_are_copied_without_links_that_lead_nowhere_as_editors_make_them(tmp_path: Path) -> None:
+    source = tmp_path / "lab"
+    source.mkdir()
+    (source / "server.py").touch()
+    (source / ".#server.py").symlink_to("somebody@host.123")
+    copy_sources({"lab": source}, tmp_path / "workspace")
+    assert [path.name for path in (tmp_path / "workspace" / "src" / "lab").iterdir()] == ["server.py"]
+    (source / "pipe").mkdir(mode=0)
+    os.mkfifo(source / "fifo")
+    with pytest.raises(HostingError, match="lab: can't be copied"):
+        copy_sources({"lab": source}, tmp_path / "workspace")

@@ -23,21 +23,21 @@ def _fleet(robots: int = 1) -> Fleet:
     return Fleet([model_named("burger")] * robots, [LIMITS] * robots, [0.1] * robots)
 
 
-def _site(fleet: Fleet) -> Any:
-    """A site where the left wheel slips by two sigmas, and the right one by one; only their sizes count."""
+def _context(fleet: Fleet) -> Any:
+    """A context where the left wheel slips by two sigmas, and the right one by one; only their sizes count."""
     noise = SimpleNamespace(standard_normal=lambda out: np.copyto(out, [2.0, -1.0]))
     return SimpleNamespace(fleet=fleet, noise=SimpleNamespace(stream=lambda _: noise))
 
 
 def _measure(odometry: WheelOdometry) -> None:
-    for call in odometry.prepared([0]).measure:
+    for call in odometry.measurement_calls([0]).measure:
         call()
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-5, 5), st.integers(1, 200))
 def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: float, updates: int) -> None:
     fleet = _fleet()
-    odometry = WheelOdometry(OdometryParams(), _site(fleet))
+    odometry = WheelOdometry(OdometryParams(), _context(fleet))
     for update in range(1, updates + 1):
         travelled = update / 30.0 * np.array([v - w * SEPARATION / 2, v + w * SEPARATION / 2])
         fleet.wheel_angles[0] = travelled / RADIUS
@@ -61,7 +61,7 @@ def test_each_error_of_odometry_has_its_size_and_a_reset_forgets_it(
     params: OdometryParams, x: float, yaw: float
 ) -> None:
     fleet = _fleet()
-    odometry = WheelOdometry(params, _site(fleet))
+    odometry = WheelOdometry(params, _context(fleet))
     fleet.wheel_angles[0] = 1.0, 1.0  # [rad]
     _measure(odometry)
     chord = x * np.sinc(yaw / (2.0 * math.pi))
@@ -74,7 +74,7 @@ def test_each_error_of_odometry_has_its_size_and_a_reset_forgets_it(
 
 def test_pose_now_is_that_of_the_next_update_without_its_slip() -> None:
     fleet = _fleet()
-    odometry = WheelOdometry(OdometryParams(odom_slip=0.1), _site(fleet))
+    odometry = WheelOdometry(OdometryParams(odom_slip=0.1), _context(fleet))
     _measure(odometry)
     fleet.wheel_angles[0] = 1.0, 1.0
     assert odometry.pose_now(0) == pytest.approx((0.033, 0.0, 0.0))

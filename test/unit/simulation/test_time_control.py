@@ -11,19 +11,19 @@ RATE = 240  # [Hz] of the steps
 def test_factor_zero_waits_for_rests_only() -> None:
     wall = FakeClock()
     timing = Pacer(0.0, RATE, wall.now)
-    assert timing.ahead(10**12) == 0.0
+    assert timing.wait_time(10**12) == 0.0
     wall.time += REST_PERIOD
-    assert timing.ahead(10**12) == REST
-    assert timing.ahead(10**12) == 0.0
+    assert timing.wait_time(10**12) == REST
+    assert timing.wait_time(10**12) == 0.0
 
 
 def test_long_lag_is_dropped_and_not_caught_up_in_a_burst() -> None:
     wall = FakeClock()
     timing = Pacer(1.0, RATE, wall.now)
     wall.time += 5.0
-    assert timing.ahead(240) == REST
-    assert timing.ahead(240) == 0.0
-    assert timing.ahead(264) == pytest.approx(0.1)
+    assert timing.wait_time(240) == REST
+    assert timing.wait_time(240) == 0.0
+    assert timing.wait_time(264) == pytest.approx(0.1)
 
 
 def test_report_says_how_fast_time_went_what_a_step_took_and_how_much_lag_there_is_and_was_dropped() -> None:
@@ -32,13 +32,13 @@ def test_report_says_how_fast_time_went_what_a_step_took_and_how_much_lag_there_
     wall.time += 0.9
     assert timing.report(240) is None
     wall.time += 1.1
-    timing.ahead(240)
+    timing.wait_time(240)
     timing.waited(0.8)
     report = timing.report(240)
     assert report == FactorReport(0.5, 2.0, pytest.approx(1.2 / 240), pytest.approx(1.5), pytest.approx(1.5))
     assert report.behind
     wall.time += 1.05
-    timing.ahead(720)
+    timing.wait_time(720)
     assert timing.report(720) == FactorReport(
         pytest.approx(2.0 / 1.05), 2.0, pytest.approx(1.05 / 480), pytest.approx(0.05), 0.0
     )

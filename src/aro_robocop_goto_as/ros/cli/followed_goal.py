@@ -16,7 +16,7 @@ from visualization_msgs.msg import MarkerArray
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, SimStatus
 
 from ...errors import FrameError
-from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, place, prefixed
+from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, position_text, prefixed
 from ...probes import master
 from ...process import signals
 from ...raycast.enclosure import is_outside
@@ -136,7 +136,8 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
         return NOT_REACHED
     _watch_walls(position, transformer, lambda: odometry.message)
     given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
-    tell(f"goal {given}" + (f", {place(position.x, position.y, odom)}" if given.split()[-1] != odom else ""))
+    in_odom = f", {position_text(position.x, position.y, odom)}" if pose.header.frame_id != odom else ""
+    tell(f"goal {given}{in_odom}")
     status = follow(client, position)
     if simulator.message is not None and args.robot.strip("/") in simulator.message.slipped:
         complain(SLIPPED)

@@ -40,6 +40,8 @@ def parse(argv: List[str]) -> argparse.Namespace:
     )
     # argparse takes -5e-1 for an option, but not with a space before it.
     args = parser.parse_intermixed_args([f" {word}" if NEGATIVE.fullmatch(word) else word for word in argv])
+    if not args.frame:
+        parser.error("--frame: expected the name of a frame, got nothing")
     args.launch += [f"world:={args.world}"] if args.world else []
     for word in args.launch:
         option = word.partition(":=")[0]

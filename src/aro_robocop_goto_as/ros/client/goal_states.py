@@ -18,10 +18,10 @@ DROPPED = (
 
 def ending(state: int, result: Optional[GoToPositionResult]) -> str:
     """How a goal ended: its terminal state, and the result's message, unless this begins with the state itself."""
-    message = told(state, "" if result is None else result.message)
+    message = result_text(state, "" if result is None else result.message)
     return message if message.startswith(f"{STATES[state]}:") else ": ".join(filter(None, (STATES[state], message)))
 
 
-def told(state: int, message: str) -> str:
+def result_text(state: int, message: str) -> str:
     """The message of a result; for a goal that was recalled without one, why servers recall goals."""
     return message or (DROPPED if state == GoalStatus.RECALLED else "")

@@ -20,7 +20,7 @@ from aro_robocop_goto_as.msg import (
 )
 
 from ...errors import FrameError
-from ...names import ACTION, BRIDGE, place
+from ...names import ACTION, BRIDGE, position_text
 from ..node_main import answer_help, load_params, node
 from . import discovery
 from .goal_frame import GoalTransformer
@@ -108,7 +108,7 @@ class Bridge:
 
         Reports name the place that was clicked, as the view shows it.
         """
-        where = place(click.pose.position.x, click.pose.position.y, self.transformer.frame_of(click))
+        where = position_text(click.pose.position.x, click.pose.position.y, self.transformer.frame_of(click))
         if not discovery.is_up(self.client) and not self.wait_for_server(where):
             return
         self.cancel_goal()
@@ -120,7 +120,9 @@ class Bridge:
             self.client.stop_tracking_goal()  # so that an earlier goal's late end is not taken for this one's
             self.has_ended.clear()
             self.client.send_goal(GoToPositionGoal(position), done_cb=self.on_done, feedback_cb=self.on_feedback)
-        rospy.loginfo("goal sent: %s, for the server %s", self.where, place(position.x, position.y, self.p.goal_frame))
+        rospy.loginfo(
+            "goal sent: %s, for the server %s", self.where, position_text(position.x, position.y, self.p.goal_frame)
+        )
         self.report()
 
     def wait_for_server(self, where: str) -> bool:
@@ -135,7 +137,7 @@ class Bridge:
         if not kept:
             rospy.loginfo("goal cancelled before its server was up: %s", where)
             self.report()
-        return kept and not self.clicked.is_set()
+        return kept and not (self.clicked.is_set() or rospy.is_shutdown())
 
     def cancel_goal(self) -> None:
         """Cancel the current goal, if there is one, and wait for its end."""

@@ -11,7 +11,7 @@ from aro_robocop_goto_as.msg import GoToPositionFeedback, GoToPositionGoal
 from ...geometry import MAX_COORDINATE, Pose2D, Twist2D
 from ...goto.params import GotoParams
 from ...goto.rule import Decision, EndGoal, Goal, MoveForward, Outcome, Pursuit, Rotate, step
-from ...names import place
+from ...names import position_text
 from .inputs import Inputs
 
 
@@ -51,7 +51,7 @@ class GoalExecution:
         )
 
     def begin_period(self, now: float) -> float:
-        """A control period begins; the time of the first one."""
+        """Note that a control period begins; returns when the first one began."""
         if self.started is None:
             self.started = now
         self._now = now
@@ -93,7 +93,7 @@ class GoalExecution:
     def where(self) -> str:
         """The goal's position in words, with odometry's frame once that is known."""
         x, y, odom = self.goal.x, self.goal.y, self._inputs.odom
-        return f"x {x:.2f} y {y:.2f}" if odom is None else place(x, y, odom.message.header.frame_id)
+        return f"x {x:.2f} y {y:.2f}" if odom is None else position_text(x, y, odom.message.header.frame_id)
 
 
 def feedback_of(decision: Decision) -> GoToPositionFeedback:

@@ -124,8 +124,8 @@ class Inputs:
             s, cone = scan.message, math.degrees(self._tuning.params.obstacle_half_angle)
             angles = f"angles {s.angle_min:g} to {s.angle_max:g} rad, increment {s.angle_increment:g} rad"
             raise RobocopError(
-                f"{rospy.resolve_name('scan')} has no beam within {cone:.0f} degrees of straight ahead "
-                f"({len(s.ranges)} beams, {angles})"
+                f"{rospy.resolve_name('scan')}: no beam is known to be within {cone:.0f} degrees of straight ahead: "
+                f"none is, or the angles contradict each other ({len(s.ranges)} beams, {angles})"
             )
         return pose, scan.clearance
 

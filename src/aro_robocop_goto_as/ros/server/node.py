@@ -29,7 +29,7 @@ from .ticks import Ticks
 from .tuning import Tuning
 
 SHUTDOWN_TIMEOUT = 5.0  # [s, wall] for a running goal to stop the robot and report SHUTDOWN
-MAX_AHEAD = 10.0  # [s] that a stamp may be later than now: clocks of machines differ, and simulated time may race
+MAX_STAMP_LEAD = 10.0  # [s] that a stamp may be later than now: clocks of machines differ, and simulated time may race
 SEND_TIME = 0.1  # [s, wall] for rospy to send what was just published
 
 
@@ -37,7 +37,7 @@ class GotoNode:
     """Executes one goal at a time, in the thread of actionlib's SimpleActionServer.
 
     A simulator in lockstep holds time at each tick until the server has answered it: the running goal after its control
-    period, or an idle server at once. `executing` is locked while a goal runs.
+    period, or an idle server at once. `execution_lock` is locked while a goal runs.
     """
 
     def __init__(self, p: GotoParams) -> None:
@@ -46,7 +46,7 @@ class GotoNode:
         self.display = Display(self.tuning, self.inputs)  # in RViz
         self.stop_reason = ""  # why the node ends, once it does
         self.clock_error = ""
-        self.executing = threading.Lock()
+        self.execution_lock = threading.Lock()
         self.cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         odom = rospy.Subscriber("odom", Odometry, self.inputs.on_odom, tcp_nodelay=True)
         scan = rospy.Subscriber("scan", LaserScan, self.inputs.on_scan, tcp_nodelay=True)
@@ -62,14 +62,14 @@ class GotoNode:
 
     def execute(self, goal: GoToPositionGoal) -> None:
         """Drive to a goal, then to a goal that came meanwhile: actionlib would look for it only 0.1 s [wall] later."""
-        with self.executing:
+        with self.execution_lock:
             self.go_to(goal)
             while self.server.is_new_goal_available():
                 self.go_to(self.server.accept_new_goal())
 
     def go_to(self, goal: GoToPositionGoal) -> None:
         """The handout's loop: one control period after another, until the goal gets its one terminal state."""
-        self.warn_of_the_future(self.server.current_goal.get_goal_id().stamp)
+        self.warn_if_stamped_in_future(self.server.current_goal.get_goal_id().stamp)
         execution = GoalExecution(goal, self.inputs)
         ending = execution.refusal()
         try:
@@ -99,9 +99,9 @@ class GotoNode:
         self.set_terminal_state(execution, ending)
         self.ticks.answer(self.ticks.newest())
 
-    def warn_of_the_future(self, stamp: rospy.Time) -> None:
+    def warn_if_stamped_in_future(self, stamp: rospy.Time) -> None:
         """Warn of a goal's stamp that is later than now: actionlib's server drops all goals with an earlier stamp."""
-        if stamp.to_sec() > rospy.get_time() + MAX_AHEAD:
+        if stamp.to_sec() > rospy.get_time() + MAX_STAMP_LEAD:
             rospy.logwarn(
                 "the goal is stamped %.1f s, but the time is %.1f s: after this goal, every goal with an earlier stamp "
                 "ends as RECALLED. Start the server again, and stamp goals by rospy.Time.now() with /use_sim_time set, "
@@ -115,7 +115,10 @@ class GotoNode:
         return bool(self.stop_reason) or self.server.is_preempt_requested()
 
     def control_period(self, execution: GoalExecution, tick_ns: int) -> Optional[Ending]:
-        """Errors, rotate or drive, feedback; returns how the goal ends, None to go on."""
+        """One period of the handout's loop: compute the errors, command a rotation or a drive, publish feedback.
+
+        Returns how the goal ends, or None to go on.
+        """
         if self.is_in_lockstep():
             self.inputs.wait_for_tick(tick_ns)
         p, now = self.tuning.params, tick_ns / NANOSECONDS
@@ -167,7 +170,10 @@ class GotoNode:
         return f"; {topic} is also published by {' and '.join(others)}" if others else ""
 
     def is_in_lockstep(self) -> bool:
-        """Return whether the node that publishes odometry receives the answers; others, such as rosbag, don't count."""
+        """Return whether the node that publishes odom also subscribes to tick_answer: it is a simulator in lockstep.
+
+        Another subscriber, such as rosbag, is none.
+        """
         odom = self.inputs.odom
         return odom is not None and is_connected_to(self.ticks.answers, sender(odom.message))
 
@@ -176,14 +182,14 @@ class GotoNode:
         tick = self.ticks.answered
         while not self.stop_reason:
             tick = self.ticks.wait_for_next(tick, lambda: bool(self.stop_reason))
-            with self.executing:
+            with self.execution_lock:
                 if not (self.stop_reason or self.server.is_new_goal_available() or self.server.is_active()):
                     self.ticks.answer(self.ticks.newest())
 
     # -- the node --
 
     def on_clock_set_back(self, reason: str) -> None:
-        """End the node: actionlib does not go on then, as its stamps only grow."""
+        """End the node: its action server would drop all goals, as they are stamped earlier than the last one."""
         self.clock_error = self.stop_reason = reason
         rospy.signal_shutdown(reason)
 
@@ -191,8 +197,8 @@ class GotoNode:
         """Before rospy closes its topics: let the running goal end, and stop the robot."""
         self.stop_reason = self.stop_reason or "the server is shutting down"
         self.ticks.wake()
-        if self.executing.acquire(timeout=SHUTDOWN_TIMEOUT):
-            self.executing.release()
+        if self.execution_lock.acquire(timeout=SHUTDOWN_TIMEOUT):
+            self.execution_lock.release()
         self.cmd_vel.publish(Twist())
         time.sleep(SEND_TIME)
 

@@ -36,7 +36,7 @@ def _velocity(message: Twist) -> Optional[Twist2D]:
 class CommandTopics:
     """Subscribers in the robots' namespaces, and what is known of the nodes that publish to them.
 
-    rospy's threads post what arrives to the simulation's owner, who calls the methods.
+    rospy's threads post what arrives to the simulation thread, which calls the methods.
     """
 
     def __init__(self, running: RunningSimulator) -> None:

@@ -40,7 +40,7 @@ REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, what its client ca
 
 
 class GazeboServices:
-    """Every request is carried out by the simulation's owner, between two steps, or refused with success false."""
+    """Every request is carried out by the simulation thread, between two steps, or refused with success false."""
 
     def __init__(
         self,
@@ -50,16 +50,16 @@ class GazeboServices:
         refusal: str = "",
         offer: Offer = rospy.Service,
     ) -> None:
-        """`call`: has the owner's thread run a function, and returns its result.
+        """`call`: has the simulation thread run a function, and returns its result.
 
         Without the simulator's services pausing and resetting do nothing; changes are refused with this reason.
         """
         self._simulator, self._call, self._offer = simulator, call, offer
         self._services, self._refusal = services, refusal
         self._names = robot_names(simulator)
-        self._serve_empty("pause_physics", lambda: self._changes().set_paused(True))
-        self._serve_empty("unpause_physics", lambda: self._changes().set_paused(False))
-        # Gazebo's reset_simulation also sets time back to zero; here time goes on.
+        self._serve_empty("pause_physics", lambda: self._require_services().set_paused(True))
+        self._serve_empty("unpause_physics", lambda: self._require_services().set_paused(False))
+        # Unlike Gazebo's, these leave models that were moved, added or deleted as they are, and time goes on.
         self._serve_empty("reset_simulation", simulator.reset)
         self._serve_empty("reset_world", simulator.reset)
         for name, kind, answer in (
@@ -67,7 +67,7 @@ class GazeboServices:
             ("get_world_properties", srv.GetWorldProperties, self._world_properties),
             ("set_model_state", srv.SetModelState, lambda request: self._set_model_state(request.model_state)),
         ):
-            serve(f"/gazebo/{name}", kind, self._in_owner(answer), "status_message", offer=offer)
+            serve(f"/gazebo/{name}", kind, self._in_simulation_thread(answer), "status_message", offer=offer)
         serve("/gazebo/spawn_sdf_model", srv.SpawnModel, self._spawn, "status_message", "SpawnModel: ", offer)
         serve("/gazebo/delete_model", srv.DeleteModel, self._delete, "status_message", "DeleteModel: ", offer)
         offer("/gazebo/delete_light", srv.DeleteLight, _delete_light)
@@ -84,15 +84,15 @@ class GazeboServices:
 
         self._offer(f"/gazebo/{name}", Empty, respond)
 
-    def _in_owner(self, answer: Callable[[Any], Fields]) -> Callable[[Any], Fields]:
+    def _in_simulation_thread(self, answer: Callable[[Any], Fields]) -> Callable[[Any], Fields]:
         return lambda request: self._call(lambda: answer(request))
 
-    def _changes(self) -> SimulatorServices:
+    def _require_services(self) -> SimulatorServices:
         if self._services is None:
             raise WorldError(self._refusal)
         return self._services
 
-    # -- in the owner's thread --
+    # -- in the simulation thread --
 
     def _model(self, name: str) -> State:
         """The state of a model or robot; FrameError if it does not exist. 'model::link' means its model here."""
@@ -117,7 +117,7 @@ class GazeboServices:
 
     def _set_model_state(self, requested: ModelState) -> Fields:
         target = self._in_world(requested.pose, requested.reference_frame)
-        self._changes()
+        self._require_services()
         name, done = requested.model_name, "SetModelState: set model state done"
         if name not in self._names:
             self._model(name)  # an error lists robots as well
@@ -140,7 +140,7 @@ class GazeboServices:
 
     def _spawn(self, request: Any) -> Fields:
         pose = self._call(lambda: self._in_world(request.initial_pose, request.reference_frame))
-        changes = self._changes()
+        changes = self._require_services()
         if request.model_name in self._names:
             raise WorldError(f"model name [{request.model_name}] is already used by a robot")
         return {"status_message": "SpawnModel: " + changes.spawn(request.model_name, request.model_xml, "", pose)}
@@ -148,7 +148,7 @@ class GazeboServices:
     def _delete(self, request: Any) -> Fields:
         if request.model_name in self._names:
             raise WorldError(f"[{request.model_name}] is a robot; robots cannot be deleted")
-        return {"status_message": "DeleteModel: " + self._changes().delete(request.model_name)}
+        return {"status_message": "DeleteModel: " + self._require_services().delete(request.model_name)}
 
 
 def _delete_light(request: Any) -> Tuple[bool, str]:

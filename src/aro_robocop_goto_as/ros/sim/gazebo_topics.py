@@ -39,7 +39,7 @@ def message_type(name: str) -> Any:
 
 
 class GazeboTopics:
-    """Published by the owner's thread at clock ticks, while somebody subscribes."""
+    """Published by the simulation thread at clock ticks, while somebody subscribes."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator

@@ -56,7 +56,7 @@ def _log(p: SimParams, world: World, simulator: Simulator) -> None:
     is_elsewhere = not world.has_spawn and first != world.spawn
     if is_elsewhere and not p.robots.spawn.strip() and (p.robots.robots.strip() or "1").isdecimal():
         rospy.logwarn(
-            "%s (%g, %g) is %s; spawning at the nearest free pose (%.2f, %.2f); spawn:='X Y' chooses another one",
+            "%s (%g, %g) is %s; spawning at the free pose (%.2f, %.2f); spawn:='X Y' chooses another one",
             "the saved robot's pose"
             if world.has_saved_robot
             else f"world {world.name} does not say where robots start, and",

@@ -49,7 +49,7 @@ def serve(
 
 
 class SimulatorServices:
-    """Files are read in the service's thread; all else is done in the owner's, between two steps."""
+    """Files are read in the service's thread; all else is done in the simulation thread, between two steps."""
 
     def __init__(self, running: RunningSimulator) -> None:
         p = running.simulator.params
@@ -67,19 +67,21 @@ class SimulatorServices:
         serve("~set_pose", SetPose, self._on_set_pose, begin="pose refused: ")
         for robot, name in enumerate(self._names if p.topics.has_initialpose else []):
             self._subscribe(robot, name)
-        self._factor: float = running.time_control.pacer.factor  # asked for last; the owner's thread may lag behind
+        self._factor: float = running.time_control.pacer.factor  # asked for last; the simulation thread may lag behind
         rospy.set_param("~real_time_factor", self._factor)  # its server begins here
         self._reconfigure = Server(SimConfig, self._on_reconfigure)
 
     # -- time --
 
     def set_paused(self, paused: bool) -> str:
-        """Pause or resume simulated time, in the owner's thread; returns what was done."""
+        """Pause or resume simulated time, in the simulation thread; returns what was done."""
         self._running.set_paused(paused)
+        if paused and not self._running.time_control.standing:
+            return "will be paused when the step that is in progress ends"
         return "{} at {:.3f} s".format("paused" if paused else "running", self._simulator.time)
 
     def _on_step(self, request: Any) -> Dict[str, Any]:
-        """Blocks this service's thread until the span is over; the owner's loop goes on meanwhile."""
+        """Blocks this service's thread until the span is over; the simulation thread's loop goes on meanwhile."""
         time, rate = self._running.time_control, self._simulator.rate
         if not (math.isfinite(request.duration) and 0.0 <= request.duration <= MAX_SPAN):
             return self._step_refused(f"duration {request.duration}: expected 0 to {MAX_SPAN:g} s")

@@ -58,6 +58,11 @@ class StepTopics:
 
     def subscriptions(self) -> Subscriptions:
         """Topic of a sensor -> indices of the robots for which it is subscribed to; odometry also for /tf."""
+        self._follow_subscribers()
+        return self._subscriptions
+
+    def _follow_subscribers(self) -> None:
+        """Make the batches anew if a subscriber has come or gone."""
         if self._changes != DirectPublisher.changes:
             self._changes = DirectPublisher.changes  # before the look at the connections: one may change during it
             self._prepared = {}
@@ -69,7 +74,6 @@ class StepTopics:
                     if any(topic.get_num_connections() for topic in [*(topic for topic, _ in topics), *also]):
                         subscriptions.setdefault(sensor, []).append(row)
             self._subscriptions = subscriptions
-        return self._subscriptions
 
     def publish(self, due: Due, more: bool = False) -> None:
         """All measurements of one step; then the clock if it is due, so that a tick's data is there when it ticks.
@@ -104,11 +108,11 @@ class StepTopics:
         return transforms
 
     def publish_clock(self) -> None:
-        """Simulated time alone."""
-        self.subscriptions()
+        """Publish simulated time alone."""
+        self._follow_subscribers()
         self._clock_alone.send(self._simulator.stamp_ns)
 
-    def due(self, due: Due) -> Iterator[Tuple[DirectPublisher, Any]]:
+    def messages_due(self, due: Due) -> Iterator[Tuple[DirectPublisher, Any]]:
         """The topics of what is due, with their messages; /tf last, with all robots' transforms in one message."""
         for sensor, of_robots in self.topics.items():
             for row in due.of(sensor):
@@ -126,7 +130,7 @@ class StepTopics:
 
     def _prepare(self, due: Due) -> Tuple[Sequence[Made], Batch]:
         """The functions that make messages, and the batch of all packed messages, of topics with subscribers."""
-        topics = [(topic, message) for topic, message in self.due(due) if topic.get_num_connections()]
+        topics = [(topic, message) for topic, message in self.messages_due(due) if topic.get_num_connections()]
         packed: List[Posted] = [posted for posted in topics if isinstance(posted[1], PackedMessage)]
         made = [posted for posted in topics if not isinstance(posted[1], PackedMessage)]
         return made, Batch(packed, [(self.clock, self._clock_message)] if due.clock else [])

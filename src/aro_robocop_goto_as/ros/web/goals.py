@@ -19,7 +19,7 @@ from ...web import text
 from ...web.page import floor_point
 from ...web.state import PageState
 from .. import convert, markers
-from ..client.goal_states import STATES, UNFINISHED, told
+from ..client.goal_states import STATES, UNFINISHED, result_text
 from ..connected_nodes import publishers_of
 from ..marker_shapes import MarkerStore, solids
 from .part import Context, Inbox, Part
@@ -60,17 +60,17 @@ class GoalHistory:
             del self._goals[oldest]
 
     def position(self, goal_id: str) -> Optional[Tuple[float, float]]:
-        """A goal's position [m] in the server's frame, if it was seen and is not too old.
+        """A goal's position [m] in the server's frame, if it was seen and is not too old."""
+        return self._goals.get(goal_id)
 
-        A goal without an id, such as a goal of `rostopic pub`, gets its id from the server: the first unknown id that
-        is asked for belongs to this goal.
-        """
+    def named(self, goal_id: str) -> None:
+        """A server names a goal: a goal that was sent without an id, as by `rostopic pub`, has the first unknown id."""
         if goal_id not in self._goals and "" in self._goals:
             self._goals[goal_id] = self._goals.pop("")
-        return self._goals.get(goal_id)
 
     def ended(self, robot: str, goal_id: str, state: str, message: str) -> None:
         """A result was received."""
+        self.named(goal_id)
         self.latest.appendleft(Ended(robot, state, message, self.position(goal_id) or text.goal_in(message)))
 
 
@@ -143,6 +143,8 @@ class GoalsPart(Part):
 
     def _on_status(self, _: float, message: GoalStatusArray) -> None:
         self._executing = any(STATES.get(entry.status) in UNFINISHED for entry in message.status_list)
+        for entry in message.status_list:
+            self._history.named(entry.goal_id.id)
         known = (entry for entry in message.status_list if entry.goal_id.id != self._forgotten)
         self._newest = max(known, key=lambda entry: entry.goal_id.stamp, default=self._newest)
 
@@ -153,7 +155,7 @@ class GoalsPart(Part):
         if robot == self._robot:
             self._feedback = None
         state, goal_id = message.status.status, message.status.goal_id.id
-        self._history.ended(robot, goal_id, STATES.get(state, ""), told(state, message.result.message))
+        self._history.ended(robot, goal_id, STATES.get(state, ""), result_text(state, message.result.message))
 
     def show(self, state: PageState) -> None:
         if state.resets != self._resets and self._newest is not None and not self._executing:

@@ -94,5 +94,5 @@ def _slip(state: PageState) -> str:
     robots = " and ".join(filter(None, state.slipped))
     return (
         f"The wheels {robots and f'of {robots} '}slipped at an obstacle: odometry is wrong, and goals lead elsewhere. "
-        "The robot is shown where it is. Reset puts it and its odometry back."
+        "Reset puts robots and their odometry back."
     )

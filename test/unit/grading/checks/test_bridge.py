@@ -297,6 +297,7 @@ def _replaced(*cancels: rec.Cancel, preempted: str = "older", older_x: float = 1
         (replace(_replaced(preempted=""), goals=_replaced().goals[:1]), "does the callback wait for the older goal"),
         (replace(_replaced(), goals=_replaced().goals[1:]), "The click was not forwarded"),
         (replace(_replaced(), clicks=(BEFORE, replace(NEWER, y=-0.9))), "The sign of y is wrong"),
+        (replace(_replaced(), goals=(_replaced().goals[0], replace(_replaced().goals[1], x=math.nan))), ""),
     ],
 )
 def test_cause_of_an_older_goal_that_is_not_replaced_is_named(record: Record, words: str) -> None:

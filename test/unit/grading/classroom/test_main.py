@@ -5,7 +5,7 @@ import time
 import pytest
 from grading_records import PLAN, keep, keep_grade
 
-from robocop_grading.classroom.main import Gradebook, chosen, class_seed
+from robocop_grading.classroom.main import Gradebook, class_seed, to_regrade
 from robocop_grading.classroom.results import Results
 from robocop_grading.errors import GradingSetupError
 from robocop_grading.grades import Grade
@@ -32,7 +32,7 @@ def group(tmp_path):
     keep_grade(results, Grade("ben", (), ("ben.rar: a .rar file",)))
 
     def make(again=()):
-        return Gradebook(tmp_path, results, PLAN, hand_ins, chosen(again, hand_ins) if again != () else ())
+        return Gradebook(tmp_path, results, PLAN, hand_ins, to_regrade(again, hand_ins) if again != () else ())
 
     return make
 

@@ -1,5 +1,6 @@
 """A class is found in what the platforms of courses export, and so is who handed in what."""
 
+import struct
 import zipfile
 
 import pytest
@@ -73,6 +74,11 @@ def test_export_that_is_still_packed_is_refused_with_the_command_that_unpacks_it
         with pytest.raises(GradingSetupError) as error:
             class_folder(given, ())
         assert str(error.value).endswith(f"; unpack it first: unzip -q -d FOLDER '{export}'")
+
+
+def test_damaged_archive_is_a_hand_in_like_others(tmp_path):
+    (tmp_path / "lab.zip").write_bytes(struct.pack("<4s4H2LH", b"PK\5\6", 0, 0, 1, 1, 46, 0, 0))  # only an end record
+    assert class_folder(tmp_path, ()) == tmp_path
 
 
 @pytest.mark.parametrize("files, expected", [(GOOGLE[:2], True), (GITHUB, True), ([SERVER, "a/b.py"], False)])

@@ -30,14 +30,14 @@ def table():
 
 def test_a_goal_goes_from_pending_to_its_end_and_is_forgotten_some_time_later(table):
     assert table.add(goal("a")) and not table.add(goal("a"))
-    table.tell()
+    table.publish_status()
     assert table.states() == [("a", GoalStatus.PENDING)]
     table.accept("a")
     assert table.states() == [("a", GoalStatus.ACTIVE)] and table.last["feedback"].status.goal_id.id == "a"
     table.finish("a", GoalStatus.SUCCEEDED)
     assert table.states() == [("a", GoalStatus.SUCCEEDED)] and table.last["result"].result.success
     table.now += KEPT + rospy.Duration(1)
-    table.tell()
+    table.publish_status()
     assert table.states() == []
 
 

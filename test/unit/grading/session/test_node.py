@@ -41,7 +41,7 @@ class Watched(Node):
 
     def __init__(self, folder, do, cpu_time=60.0, spent=NOTHING):
         self.lines, self.said, self.now, topics = [], [], 0, Topics()
-        topics.listen("/said", String, lambda message: self.said.append(message.data))
+        topics.subscribe("/said", String, lambda message: self.said.append(message.data))
         text = AGENT.replace("SRC", repr(os.path.join(ROOT, "src"))).replace("TURN", do)
         command = (sys.executable, "-u", "-c", text, CHANNEL)
         job = Job("server", command, dict(os.environ), folder, folder, None, {}, cpu_time)
@@ -51,7 +51,7 @@ class Watched(Node):
     def turn(self):
         """One turn; the reason why it is over, if it is."""
         self.now += TURN
-        self.go_on(self.now, self.now, lambda: None)
+        self.run_until(self.now, self.now, lambda: None)
         return self.death(self.now / 1e9).reason if self.is_over() else None
 
 
@@ -81,7 +81,7 @@ def test_what_a_node_says_before_it_ends_by_itself_counts(started):
     assert node.turn() == "" and node.death(1.0).status == 3
     assert (node.said, node.lines) == (["ab"], ["bye"])
     calls = []
-    node.go_on(2 * TURN, 0, lambda: calls.append("as ever"))
+    node.run_until(2 * TURN, 0, lambda: calls.append("as ever"))
     assert calls == ["as ever"]
 
 

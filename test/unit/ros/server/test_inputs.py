@@ -99,7 +99,7 @@ def test_scan_whose_angles_contradict_themselves_ends_the_goal(server, first, la
     server.inputs.on_scan(
         LaserScan(angle_min=first, angle_max=last, angle_increment=increment, range_max=5.0, ranges=[2.0] * 360)
     )
-    expected = f"/scan has no beam within 30 degrees of straight ahead (360 beams, angles {first:g} to {last:g} rad"
+    expected = f"none is, or the angles contradict each other (360 beams, angles {first:g} to {last:g} rad"
     with pytest.raises(RobocopError, match=re.escape(f"{expected}, increment {increment:g} rad)")):
         server.inputs.read()
 

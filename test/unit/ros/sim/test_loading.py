@@ -11,7 +11,7 @@ from aro_robocop_goto_as.simulation.params import SimParams
 @pytest.mark.parametrize(
     "name, told",
     [
-        ("burger", "the saved robot's pose (0, 0) is occupied by 'm/l/c'; spawning at the nearest free pose ("),
+        ("burger", "the saved robot's pose (0, 0) is occupied by 'm/l/c'; spawning at the free pose ("),
         ("chair", "world w does not say where robots start, and (0, 0) is occupied by 'm/l/c'; spawning at"),
     ],
 )

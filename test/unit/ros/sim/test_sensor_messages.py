@@ -152,7 +152,7 @@ def test_a_derived_sensor_has_the_message_of_the_sensor_that_it_is_derived_from(
         topic, frame = "rear_sonar", "rear_sonar_link"
 
     sim = simulator(sonar=True)
-    (topic,) = packed.topics_of(RearSonar(sim.params.sensors.sonar, sim.site), StepTopics(sim).robots[0], False)
+    (topic,) = packed.topics_of(RearSonar(sim.params.sensors.sonar, sim.context), StepTopics(sim).robots[0], False)
     assert (topic.name, topic.kind) == ("robot_1/rear_sonar", Range)
 
 
@@ -161,7 +161,7 @@ def test_what_a_step_publishes_has_the_time_of_this_step_as_its_stamp(simulator:
     topics = StepTopics(sim)
     for stamp_ns in (100_000_000, 200_000_000):
         (*_, due) = driven(sim, Twist2D(0.2, 0.0), 0.1, ["odom"])
-        messages = dict((topic.name, message) for topic, message in topics.due(due))
+        messages = dict((topic.name, message) for topic, message in topics.messages_due(due))
         Batch([], filled=list(messages.values())).send(sim.stamp_ns)
         stamp = Odometry().deserialize(messages["/robot_1/odom"].body()).header.stamp
         assert (stamp.to_nsec(), sim.stamp_ns) == (stamp_ns, stamp_ns)

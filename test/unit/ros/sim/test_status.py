@@ -30,7 +30,7 @@ def warnings_at(
     for factor in reached:
         clock.time += 1.0
         running.simulator.steps += round(factor * RATE)
-        running.time_control.pacer.ahead(running.simulator.steps)
+        running.time_control.pacer.wait_time(running.simulator.steps)
         assert topics.report()
     return warnings
 

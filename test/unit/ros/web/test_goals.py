@@ -192,6 +192,7 @@ def test_a_goal_without_an_id_is_recognised_by_the_one_that_its_server_gives_it(
     history.sent("named", 1.0, 0.0)
     history.sent("", 2.0, 0.0)
     assert history.position("named") == (1.0, 0.0)
+    history.named("first")
     assert history.position("first") == (2.0, 0.0)
     history.sent("", 3.0, 0.0)
     history.ended("", "first", "PREEMPTED", "")

@@ -12,20 +12,20 @@ from aro_robocop_goto_as.ros import markers
 
 from .. import record as rec
 from ..handout import ACTION
-from ..plan import AGAIN, START, Push, Scenario, Step
+from ..plan import AGAIN, START, TICK, Push, Scenario, Step
 from ..record import Record
 from ..sites import SITE
 from .job import Job
 from .progress import Progress
-from .run import TICK, Run
+from .run import Run
 from .scenario_bag import MARKERS
 from .stage import Stage
 
 START_TIMEOUT = 20.0  # [s] for the node to come up: it publishes /rosout
 SERVER_TIMEOUT = 5.0  # [s] for its action server to connect, counted from then on
 WARM_UP = 0.5  # [s] of each scenario: new odometry and scans reach the node
-AT_END = 0.25  # [s] before a result, in which the robot was where it ended
-BEFORE_START, PUSHED = Twist2D(0.3, 0.4), 1.5  # [m/s], [rad/s]; [s]
+START_PUSH = Twist2D(0.3, 0.4)  # [m/s], [rad/s] before the node starts
+START_PUSH_TIME = 1.5  # [s]
 AFTER = 1.2  # [s] after each terminal state, to see whether the robot stops
 GOAL, CANCEL = f"{ACTION}/goal", f"{ACTION}/cancel"
 
@@ -55,27 +55,27 @@ class ServerRun(Run):
     def _start(self) -> Record:
         """Start the node where odometry is not zero; the record says whether its action server came up."""
         self.begin(START, SITE)
-        self.stage.push(BEFORE_START)
-        self.settle(PUSHED)
+        self.stage.push(START_PUSH)
+        self.settle(START_PUSH_TIME)
         self.stage.push(None)
         self.settle(AFTER)
         up = self._bring_up()
-        names = self.names("/result")
+        names = self.action_fields("/result")
         self.settle(0.3)
         return self.finish(START, up=up, **names)
 
     def _bring_up(self) -> bool:
         self.known, self._used = {}, False
         self.launch()
-        self.wait_for(lambda: self.topics.hears("/rosout"), START_TIMEOUT)
+        self.wait_for(lambda: self.topics.node_publishes("/rosout"), START_TIMEOUT)
         up = self.wait_for(self._connected, SERVER_TIMEOUT)
         self.settle(0.2)
         return up and not self.death_recorded
 
     def _connected(self) -> bool:
         """Return whether the node has all five topics, with the right types."""
-        heard = all(self.topics.hears(f"{ACTION}/{name}") for name in ("result", "feedback", "status"))
-        return heard and self.topics.reaches(GOAL) and self.topics.reaches(CANCEL)
+        heard = all(self.topics.node_publishes(f"{ACTION}/{name}") for name in ("result", "feedback", "status"))
+        return heard and self.topics.node_subscribes_to(GOAL) and self.topics.node_subscribes_to(CANCEL)
 
     # -- one scenario --
 
@@ -123,10 +123,12 @@ class ServerRun(Run):
         return bool(record.deaths) or not ended or self._unexpected(record) or "Traceback" in text or "[ERROR]" in text
 
     def _unexpected(self, record: Record) -> bool:
-        """Return whether a goal ended in another state than it should: openly by an abort, elsewhere by a success."""
+        """Return whether a goal ended in another state than planned, was aborted with nothing in front of the robot, or
+        succeeded away from its position.
+        """
         for goal in record.goals:
             for result in record.results_of(goal)[:1]:
-                at_end = record.samples_between(result.time - AT_END, result.time)
+                at_end = record.samples_between(result.time - rec.AT_END, result.time)
                 far = result.status == rec.ABORTED and all(
                     sample.ahead > self.limits.abort_farthest for sample in at_end
                 )
@@ -145,12 +147,12 @@ class ServerRun(Run):
             return ""
         if step.goal:
             goal = self._send(step)
-            self.stage.digest()
+            self.stage.run_node()
         elif step.cancel:
-            goal = self.parts["goals"][-1]
+            goal = self.entries["goals"][-1]
             self.add("cancels", rec.Cancel(self.stage.now, goal.id))
             self.topics.publish(CANCEL, GoalID(id=goal.id))
-            self.stage.digest()
+            self.stage.run_node()
         if not step.ends:
             return self._advance(goal, step.run)
         problem = self._until_end(goal)
@@ -192,7 +194,7 @@ class ServerRun(Run):
             if problem:
                 return problem
             now = self.stage.now
-            running = [it for it in self.parts["goals"] if it.id not in self.ended]
+            running = [it for it in self.entries["goals"] if it.id not in self.ended]
             if progress.missing_for(self.stage.odom_from_footprint(), running, now) > self.limits.stall:
                 return f"the robot made no progress for {self.limits.stall:g} s, and the goal did not end"
             if now - started > self.limits.goal_time:
