@@ -232,7 +232,12 @@ WRONG: Tuple[Wrong, ...] = (
     _server(
         "looks_left", "stops_at_obstacle", "are the beams that count those ahead", (SECTOR, "ahead = ranges[60:120]")
     ),
-    _server("left_half_only", "stops_at_obstacle", "stop before the obstacle", (SECTOR, "ahead = ranges[:30]")),
+    _server(
+        "left_half_only",
+        "stops_at_obstacle",
+        "narrow obstacle a little to the right was missed",
+        (SECTOR, "ahead = ranges[:30]"),
+    ),
     _server("right_half_only", "stops_at_obstacle", "ran into an obstacle", (SECTOR, "ahead = ranges[-30:]")),
     _server(
         "obstacle_check_while_aligned",
