@@ -20,6 +20,7 @@ def test_goal_is_reached_in_a_system_started_for_it(goto):
     assert "SUCCEEDED: REACHED: " in command.output
 
 
+@pytest.mark.slow
 def test_launch_arguments_choose_its_simulator(goto):
     command = goto("0.15", "0", "robots:=red 0 0", "--robot", "red", "world:=empty")
     assert command.wait_for_exit() == 0, command.output

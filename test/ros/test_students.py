@@ -158,6 +158,7 @@ WORKSPACE = {
 }
 
 
+@pytest.mark.slow
 def test_node_with_its_neighbours_messages_ends_and_is_named_below_the_overview(tmp_path):
     for name, text in WORKSPACE.items():
         (tmp_path / "ws" / name).parent.mkdir(parents=True, exist_ok=True)
@@ -176,6 +177,7 @@ def test_node_with_its_neighbours_messages_ends_and_is_named_below_the_overview(
         system.end()
 
 
+@pytest.mark.slow
 def test_commands_of_a_turtlebot_2_drive_its_model_and_others_that_no_robot_hears_are_known(tmp_path):
     with System(tmp_path) as system:
         system.start_master()
