@@ -174,7 +174,7 @@ WRONG: Tuple[Wrong, ...] = (
     _server(
         "scan_read_once",
         "stops_at_obstacle",
-        "checked in each iteration",
+        "check the distance ahead in each iteration",
         ("self.min_dist_ahead < 0.3", "ahead < 0.3"),
         (RATE, "        rate = rospy.Rate(10)\n        ahead = self.min_dist_ahead\n"),
     ),
