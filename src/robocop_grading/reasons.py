@@ -8,6 +8,7 @@ from .checks.verdict import Failed, Kind, without_figures
 from .faults import Faults
 from .grades import CheckOutcome, CheckResult
 from .record import Record
+from .texts import sentences
 
 NOT_EXPLAINED = "The grader failed when it looked for the cause"
 UNRECORDED = (Kind.NOT_REACHED, Kind.INCOMPLETE)  # a row for any kind does not apply to these
@@ -19,7 +20,7 @@ def with_reasons(results: List[CheckResult], records: Mapping[str, Record], faul
     where = {it.name: records.get(it.scenario, Record("", "")) for it in results}
     open_ones = [it.name for it in results if it.outcome is not CheckOutcome.PASSED]
     first = first_reasons({name: reasons_of(name, failures, where, faults) for name in open_ones})
-    causes = {name: without_figures(failure.cause) for name, failure in failures.items()}
+    causes = {name: without_figures(sentences(failure.cause)) for name, failure in failures.items()}
     same: Dict[str, str] = {}  # by cause
     for name, cause in causes.items():
         if first[name] == name and NOT_EXPLAINED not in cause:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import List, Mapping, Optional, Sequence
 
 from ..handout import Limits
-from ..record import PREEMPTED, Click, Record, SentGoal
+from ..record import PREEMPTED, RECALLED, Click, Record, SentGoal
 from . import bridge_causes as causes
 from .bridge_reports import is_silent, wrong_reports, wrong_state_reported
 from .node_lifetime import no_exception, stays_alive
@@ -81,7 +81,7 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
         wanted = f"a goal at x {before.x:g} y {before.y:g}"
         return Failed(wanted, "no goal", before.time, causes.NOT_FORWARDED, Kind.NO_GOAL)
     older, newer = old[-1], [goal for goal in goals if goal.id != old[-1].id]
-    cancelled = {change.id for change in record.statuses if change.status == PREEMPTED}
+    cancelled = {change.id for change in record.statuses if change.status in (PREEMPTED, RECALLED)}
     if not newer:
         cause = causes.CANCELLED_ONLY if older.id in cancelled else causes.NO_NEWER_GOAL
         return Failed("the newer goal", "no goal", click.time, cause, Kind.NO_GOAL)

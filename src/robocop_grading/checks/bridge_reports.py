@@ -129,6 +129,11 @@ class StateInterval(NamedTuple):
         right = {self.true} if self.true in RUNNING else {self.true, PENDING, LOST}
         return [it for it in self.reports if not it.states & (right if it.is_by_name else {self.true})]
 
+    def is_mostly_wrong(self) -> bool:
+        """Return whether half of several reports are wrong, or more; one alone may be late."""
+        wrong = len(self.wrong_reports())
+        return 2 * wrong > len(self.reports) or (wrong > 1 and 2 * wrong == len(self.reports))
+
     def frequent_words(self) -> Set[Tuple[str, int]]:
         """The words in most of its reports."""
         counts = Counter(word for report in self.reports for word in report.words)
@@ -176,18 +181,18 @@ def _state_names(states: Set[int]) -> str:
 
 
 def wrong_state_reported(record: Record) -> Optional[Failed]:
-    """Name the failure if, in some interval with two reports or more, most of them name other states; one may be late.
+    """Name the failure if, in some interval with two reports or more, most of them name other states.
 
     Only reports with actionlib's names or numbers are judged. A bridge that always names the same state passes if its
     other words tell a running goal from one that has ended.
     """
     intervals = _state_intervals(record)
-    named = [{one.named for one in it.reports if len(one.states) > 1} for it in intervals if it.reports]
+    named = [{frozenset(one.states) for one in it.reports if len(one.states) > 1} for it in intervals if it.reports]
     legend = set.intersection(*named) if len(named) > 1 else set()
-    others = [it._replace(reports=[one for one in it.reports if one.named not in legend]) for it in intervals]
+    others = [it._replace(reports=[one for one in it.reports if one.states not in legend]) for it in intervals]
     cause = "" if any(it.reports for it in others) or not legend else SEVERAL_STATES
     intervals = intervals if cause else others
-    wrong = [it for it in intervals if len(it.reports) > 1 and (cause or 2 * len(it.wrong_reports()) > len(it.reports))]
+    wrong = [it for it in intervals if len(it.reports) > 1 and (cause or it.is_mostly_wrong())]
     names = {report.named for it in intervals for report in it.reports if report.is_by_name}
     if not wrong or len(names) < 2 and _follow_the_truth(intervals):
         return None

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Mapping, Optional, Sequence
 
 from ..handout import HEADING_TOLERANCE, STOP_DISTANCE, Limits
-from ..record import ABORTED, STATUS_NAMES, Record, SentGoal
+from ..record import ABORTED, AT_END, STATUS_NAMES, Record, SentGoal
 from ..texts import sentences
 from .endings import keeps_moving, narrow_obstacle, of_goals, wrong_ending, wrong_success
 from .output import EXECUTE_RAISED, logged, logged_cause
@@ -15,6 +15,7 @@ from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
 MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
+FAR = 0.1  # [m] beyond the limit: no threshold that is a little too large explains that
 ABORTED_FAR = (
     f"The goal was aborted farther than {STOP_DISTANCE:g} m from the obstacle: is the threshold wrong, do beams "
     "count that are not ahead, or does something else abort the goal?"
@@ -51,7 +52,7 @@ def _wrong_abort(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fai
     if problem is not None:
         return problem
     end = record.results_of(goal)[0].time
-    around = record.samples_between(end - 0.25, end + limits.stop_within)
+    around = record.samples_between(end - AT_END, end + limits.stop_within)
     contact = next((sample.time for sample in around if sample.touching), math.inf)
     if contact <= end:
         cause = narrow_obstacle(record) or "The obstacle was detected too late"
@@ -59,7 +60,7 @@ def _wrong_abort(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fai
     wanted = f"an abort at {STOP_DISTANCE:g} m"
     if logged(record, EXECUTE_RAISED, end, goal.time):
         return Failed(wanted, "an exception", end, logged_cause(record, end), Kind.EXCEPTION, goal)
-    clearances = [sample.ahead for sample in record.samples_between(end - 0.25, end)]
+    clearances = [sample.ahead for sample in record.samples_between(end - AT_END, end)]
     if clearances and min(clearances) > limits.abort_farthest:
         nearest = min(sample.ahead for sample in record.samples_between(goal.time, end))
         seen = f"an abort at {min(clearances):.2f} m"
@@ -124,7 +125,9 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
     if logged(record, EXECUTE_RAISED, problem.time, goal.time) or problem.kind is Kind.MOVING:
         return problem
     hint = ""
-    if problem.kind in (Kind.ABORTED, Kind.TOO_EARLY):
+    end = problem.time
+    far = all(it.ahead > limits.abort_farthest + FAR for it in record.samples_between(end - AT_END, end))
+    if problem.kind is Kind.ABORTED or (problem.kind is Kind.TOO_EARLY and far):  # not by another threshold
         hint = "A range of 0 or NaN is treated as an obstacle"
     elif wanted == ABORTED and problem.kind in (Kind.SUCCEEDED, Kind.NO_RESULT, Kind.TOO_FAR):
         hint = "A range of 0 or NaN hides the wall"

@@ -88,7 +88,7 @@ class BridgeRun(Run):
         stamp = message.goal_id.stamp.to_sec()
         # At a tick, requests are handled first.
         if any(cancel.id == name or 0.0 < stamp <= cancel.stamp for cancel in self.entries["cancels"]):
-            self.add("statuses", rec.Status(self.stage.now, name, rec.PREEMPTED))
+            self.add("statuses", rec.Status(self.stage.now, name, rec.RECALLED))
         if self.server.add(message):
             self.add("statuses", rec.Status(self.stage.now, name, rec.PENDING))
             if self.accepts:
@@ -110,8 +110,8 @@ class BridgeRun(Run):
             everything = not message.id and not message.stamp and goal.time < self.stage.now - 1e-6
             earlier = bool(message.stamp) and known is not None and known.stamp <= message.stamp
             if known is not None and (message.id == goal.id or everything or earlier):
-                self.add("statuses", rec.Status(self.stage.now, goal.id, rec.PREEMPTED))
-                self.server.cancel(goal.id, GoToPositionResult(False, "cancelled"))
+                state = self.server.cancel(goal.id, GoToPositionResult(False, "cancelled"))
+                self.add("statuses", rec.Status(self.stage.now, goal.id, state))
 
     def _finish_goals(self, status: int = rec.SUCCEEDED) -> None:
         """Let all goals end in a state."""

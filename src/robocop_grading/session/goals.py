@@ -87,10 +87,12 @@ class Goals:
             self._ended[request.id] = self._stamp()
         self._last_cancel = max(self._last_cancel, request.stamp)
 
-    def cancel(self, name: str, result: GoToPositionResult) -> None:
-        """End a goal as cancelled: RECALLED if it was not accepted, else PREEMPTED."""
+    def cancel(self, name: str, result: GoToPositionResult) -> int:
+        """End a goal as cancelled; return its state: RECALLED if it was not accepted, else PREEMPTED."""
         status = self._statuses[name].status
-        self._end(name, CANCELLED[REQUESTED.get(status, status)], result)
+        state = CANCELLED[REQUESTED.get(status, status)]
+        self._end(name, state, result)
+        return int(state)
 
     def finish(self, name: str, status: int) -> None:
         """End a goal as SUCCEEDED, ABORTED, or PREEMPTED as if somebody else had cancelled it."""

@@ -52,7 +52,7 @@ def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None
         ("points: 0.5, scenarios: [start]", "points: -1, scenarios: [start]", "points: expected at least 0"),
         ("points: 0.5, scenarios: [start]", "points: 0.3..0.5, scenarios: [start]", "points: expected a number"),
         ("points: 0.5, scenarios: [start]", "points: 0.5, scenarios: start", "expected a list of names, got 'start'"),
-        ("scenarios: [left, far]", "scenarios: [lefft, far]", "unknown for a server: 'lefft'"),
+        ("scenarios: [left, right, far]", "scenarios: [lefft, right, far]", "unknown for a server: 'lefft'"),
         ("points: 1.0, scenarios: [click]", "points: 1.0, scenarios: [left]", "unknown for a bridge: 'left'"),
         ("  far_goal:", "  farr_goal:", "unknown: farr_goal"),
         ("name: right", "name: left", "left: expected a unique name"),

@@ -124,6 +124,7 @@ def _driven(report: Callable[[float], Iterable[str]], period: float) -> Record:
     return Record("click", "bridge", goals=tuple(goals), statuses=tuple(statuses), lines=lines, marks=marks)
 
 
+NAMES = list(rec.STATUS_NAMES)
 CZECH = ("ceka", "jede", "zruseno", "hotovo", "prekazka")
 LEGEND = "(0 PENDING, 1 ACTIVE, 2 PREEMPTED, 3 SUCCEEDED)"
 
@@ -164,6 +165,11 @@ def test_reports_that_are_late_by_one_pass(period: float) -> None:
         (lambda time: _named([_by_the_clock(time)]), "reports ACTIVE while the goal is ABORTED"),
         (lambda time: [f"state: {_by_the_clock(time)}"], "reports ACTIVE while the goal is ABORTED"),
         (lambda time: [f"Stav akce: {_by_the_clock(time)} {LEGEND}"], "names the same ones whatever the true one is"),
+        (
+            lambda time: [" ".join(NAMES[int(10.0 * time) % 5 :] + NAMES)],
+            "names the same ones whatever the true one is",
+        ),
+        (lambda time: ["ACTIVE", "LOST"], "reports LOST while the goal is ACTIVE"),
         (lambda time: _named(_states(time)), "SUCCEEDED, the state of an earlier goal"),
         (lambda time: _named(_states(time, KEPT)[:1]), "PREEMPTED, the state of an earlier goal, while the"),
         (lambda time: _named([min(_states(time)[-1], 3)]), "reports SUCCEEDED while the goal is ABORTED"),
