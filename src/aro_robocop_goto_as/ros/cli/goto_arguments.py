@@ -13,7 +13,7 @@ SERVER_TIMEOUT = 5.0  # [s, wall] for the server of a running system
 START_TIMEOUT = 60.0  # [s, wall] for the server of a system started for this goal, also on a slow machine
 REACHED, NOT_REACHED, WRONG_ARGUMENTS = 0, 1, 2  # exit statuses; argparse's own is also 2
 NEGATIVE = re.compile(r"-[\d.]+([eE][-+]?\d+)?")
-OPTIONS = ("frame", "robot")  # which are no arguments of the simulator
+MISTAKEN = ("frame", "robot")  # options that are taken for launch arguments, as in frame:=odom
 DEFAULT_FRAME = "map"  # in which RViz gives its 2D Nav Goals
 
 
@@ -45,7 +45,7 @@ def parse(argv: List[str]) -> argparse.Namespace:
     args.launch += [f"world:={args.world}"] if args.world else []
     for word in args.launch:
         option = word.partition(":=")[0]
-        if option in OPTIONS:
+        if option in MISTAKEN:
             parser.error(f"got {word}; did you mean --{option} {word.partition(':=')[2]}?")
     return args
 
