@@ -83,10 +83,11 @@ def test_the_page_reports_a_killed_simulator_and_shows_the_next_one(parts, tab):
 def test_the_browser_connects_again_by_itself_when_the_page_is_killed_and_started_again(parts, tab):
     parts.page.kill()
     parts.page.wait()
-    parts.page = parts.start()
+    wait_for(lambda: "Connected" not in tab.text(), "the browser has noticed; until then it shows what it had")
     sockets = tab.sockets
+    parts.page = parts.start()
     wait_for(lambda: tab.page.evaluate("1") and tab.sockets > sockets, "the browser connects again")
-    tab.wait_for_text(READY)
+    tab.wait_for_text(rf"Connected[\s\S]*{READY}")
     expect_a_click_to_drive_the_robot(parts, tab)
 
 

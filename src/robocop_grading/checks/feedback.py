@@ -22,7 +22,7 @@ MAX_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a tur
 MAX_WRONG_TIME = 0.25  # [s] messages that are wrong one after the other for so long are no transition
 STEADY = 0.005  # [m], [rad] smaller changes of an error are none
 SHIFT = 0.015  # [m], [rad] larger constant differences are no inexactness of /odom
-MIN_GOAL_TIME = 1.0  # [s] shorter goals say nothing about a rate
+MIN_GOAL_TIME = 2.0  # [s] for which a goal has to be active: what a server does before its loop takes part of it
 STOPS = 0.4  # [s] after a goal's end, in which a timer's last feedback may come
 MAX_LATER = 3  # messages that may come even later
 GROWN = 1.5  # times the rate of the first goal
@@ -71,7 +71,7 @@ def feedback_rate(record: Record, limits: Limits) -> Verdict:
                 return Failed(wanted, f"{rate:.1f} Hz", goal.time, cause, kind, goal)
         if len(later) > MAX_LATER:
             return Failed("no feedback after the result", f"{len(later)} messages", later[0], GOES_ON, goal=goal)
-    return PASSED if judged else NotReached("no goal was active for a second")
+    return PASSED if judged else NotReached("no goal was active for two seconds")
 
 
 def _rate(record: Record, goal: SentGoal) -> Optional[float]:
