@@ -1,5 +1,6 @@
 """A path -> the parts of the lab found there, built, with the commands that start them."""
 
+import functools
 import os
 import sys
 import tempfile
@@ -157,6 +158,7 @@ def _script(part: str, choice: Choice, top: Path) -> Script:
     )
 
 
+@functools.lru_cache(maxsize=None)  # also if the sources change while this process runs
 def _lab_folder(share: Path, state: Path) -> Path:
     return workspace.folder_for(state / "grade" / "lab", SKELETON, share / "compat")
 
