@@ -87,8 +87,8 @@ class Tab:
         return self.page.get_by_role("button", name=re.compile(rf"^{label}(\s\(\w\))?$"))
 
     def click(self, label):
-        """Click a button at once; otherwise playwright waits for frames, of which a busy machine draws few."""
-        self.button(label).click(force=True)
+        """Click a button once it stands still, and make sure that the click hit it."""
+        self.button(label).click()
 
     def open(self, label):
         """Open a tab of the panel."""

@@ -118,7 +118,7 @@ def test_a_tab_that_is_chosen_on_a_phone_fills_the_panel(web, browser, size):
     tab = Tab(browser, web.url, size, touch=True)
     tab.wait_for_text(READY)
     tab.page.get_by_role("tab", name="Plots").dispatch_event("click")
-    title = tab.page.get_by_text("errors", exact=True)
+    title = tab.page.get_by_text("errors", exact=True).last  # below that of the feedback
     wait_for(lambda: title.bounding_box()["y"] + PLOT < tab.button("Forward").bounding_box()["y"], "the plot is seen")
     tab.close()
 
@@ -205,7 +205,7 @@ def test_reset_puts_robot_and_odometry_back_and_ends_what_is_shown_of_the_last_g
     web.place(0.0, 0.0)
     assert math.hypot(*web.position()) < 0.01
     tab.click("Reset")
-    wait_for(lambda: math.dist(web.position(), SPAWN) < 0.01, "the robot is at its start")
+    wait_for(lambda: math.dist(web.position(), SPAWN) < 0.01, lambda: f"the robot is at its start: {tab.text()}")
     wait_for(lambda: "SUCCEEDED" not in tab.text(), "the page no longer shows the goal")
     odometry = web.ros.latest("/odom")["pose"]["pose"]["position"]
     assert math.hypot(odometry["x"], odometry["y"]) < 0.01

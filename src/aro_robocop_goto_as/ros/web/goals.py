@@ -3,7 +3,7 @@
 from collections import deque
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Deque, Dict, List, Optional, Set, Tuple
+from typing import Any, Deque, Dict, Optional, Set, Tuple
 
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
@@ -169,34 +169,35 @@ class GoalsPart(Part):
         answering = connected if not state.recorded else self._executing is not None
         if self._robot == self.context.state.now.selected:  # not of a robot that was chosen just now
             self.context.state.change(executing=self._executing, answering=answering)
-        rows = self._show_goal(state.selected)
-        if self._feedback is not None:
-            feedback = self._feedback
-            errors = f"{feedback.position_error:.2f} m, {feedback.angle_error:.2f} rad"
-            rows += [("errors", errors), ("feedback", feedback.message)]
+        goal, errors, progress = self._show_goal(state.selected), "", ""
         if state.waiting:
-            rows = [("goal", f"waits for its server: {state.waiting}")]
+            goal = f"waits for its server: {state.waiting}"
+        elif self._feedback is not None:
+            errors = f"{self._feedback.position_error:.2f} m, {self._feedback.angle_error:.2f} rad"
+            progress = self._feedback.message
         self._cancel.disabled = (not answering or self._executing is False) and not state.waiting
-        self._feedback_html.content = text.table(rows) if rows else ""
+        # All rows at all times: the buttons below stay where they are when a goal begins or ends.
+        rows = (("goal", goal), ("errors", errors), ("feedback", progress))
+        self._feedback_html.content = text.table((name, value or "–") for name, value in rows)
         if self._history_html is not None:
             several = len(state.robots) > 1
             lines = (self._ended(ended, several) for ended in self._history.latest)
             self._history_html.content = text.history(lines)
 
-    def _show_goal(self, robot: str) -> List[Tuple[str, str]]:
-        """The newest goal's state, as actionlib names it, and its position.
+    def _show_goal(self, robot: str) -> str:
+        """The newest goal's state, as actionlib names it, and its position; empty without a goal.
 
         It is drawn, unless the server publishes markers, as this package's does with its own tolerance.
         """
-        drawn, newest, rows = MarkerStore(), self._newest, []
+        drawn, newest, shown = MarkerStore(), self._newest, ""
         if newest is not None:
             state, goal = STATES.get(newest.status, ""), self._history.position(newest.goal_id.id)
-            rows = [("goal", f"{state} {self.context.place(robot, *goal)}" if goal else state)]
+            shown = f"{state} {self.context.place(robot, *goal)}" if goal else state
             if goal is not None and not self.context.scene.draws("server"):
                 color = markers.goal_color(state in UNFINISHED, newest.status == GoalStatus.SUCCEEDED)
                 drawn.apply(MarkerArray(markers.goal(TOLERANCE, *goal, self.context.frame_of(robot, "odom"), color)))
         self.context.scene.show("goal", drawn.placed(self.context.locate))
-        return rows
+        return shown
 
     def _ended(self, ended: Ended, several: bool) -> Tuple[bool, str]:
         outcome, colon, message = text.short(ended.message).partition(": ")

@@ -67,8 +67,8 @@ def add_parts(context: Context, p: WebParams) -> List[Part]:
     parts.append(goals)
     tabs = context.server.gui.add_tab_group()
     with tabs.add_tab("Control" if live else "Goals"):
+        parts.append(TimePart(context))  # above the history, which grows
         goals.add_history()
-        parts.append(TimePart(context))
         sector = {words: color_of((c.r, c.g, c.b, c.a))[0] for words, c in SECTOR.items()}
         context.server.gui.add_html(text.legend("sector ahead", sector))
         if live and LAB.is_file():

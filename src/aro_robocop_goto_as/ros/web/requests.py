@@ -9,7 +9,7 @@ from ...names import SIMULATOR, absolute
 from ...web.state import SharedState
 from ..waiting import wait_until
 
-SERVICE_TIMEOUT, CONNECT_TIMEOUT = 2.0, 2.0  # [s, wall] for a service to appear, for a subscriber to connect
+SERVICE_TIMEOUT, CONNECT_TIMEOUT = 10.0, 2.0  # [s, wall] for a service to appear, for a subscriber to connect
 
 
 class Requests:

@@ -1,5 +1,6 @@
 """What a click on the floor requests, and what is remembered of goals."""
 
+import re
 from unittest.mock import MagicMock
 
 import pytest
@@ -79,7 +80,7 @@ def shown(part, context):
     """Whether the server is there, whether it executes a goal, and whether feedback is shown."""
     part.show(context.state.now)
     state = context.state.now
-    return state.answering, state.executing, "errors" in part._feedback_html.content
+    return state.answering, state.executing, "0.00 rad" in part._feedback_html.content
 
 
 def test_a_goal_is_executed_until_its_server_reports_its_end_or_is_gone_however_long_both_take():
@@ -114,9 +115,9 @@ def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names(
     goal.goal.position.x = 1.0
     part._on_goal(0.0, goal)
     part._on_status(0.0, GoalStatusArray(status_list=[status]))
-    assert part._show_goal("red") == [("goal", "ACTIVE (1.00, 0.00) in odom")]
+    assert part._show_goal("red") == "ACTIVE (1.00, 0.00) in odom"
     context.frames.update("map", "red/odom", lifted(Pose2D(-0.7, 0.2, 0.0)))
-    assert part._show_goal("red") == [("goal", "ACTIVE (0.30, 0.20)")]
+    assert part._show_goal("red") == "ACTIVE (0.30, 0.20)"
 
 
 def test_a_goal_that_has_ended_is_no_longer_shown_when_robots_are_placed_anew():
@@ -127,6 +128,19 @@ def test_a_goal_that_has_ended_is_no_longer_shown_when_robots_are_placed_anew():
         part._on_status(0.0, ended)  # as its server does for some seconds
         part.show(context.state.now)
         assert ("SUCCEEDED" in part._feedback_html.content) == is_shown
+
+
+def test_the_rows_above_the_buttons_are_the_same_with_and_without_a_goal():
+    part, context = made()
+
+    def rows():
+        part.show(context.state.now)
+        return re.findall(r"nowrap\">(\w+)<", part._feedback_html.content)
+
+    idle = rows()
+    part._on_feedback(0.0, GoToPositionActionFeedback())
+    part._on_status(0.0, GoalStatusArray(status_list=[GoalStatus(status=GoalStatus.ACTIVE)]))
+    assert rows() == idle == ["goal", "errors", "feedback"]
 
 
 def test_a_goal_that_waits_for_its_server_is_shown_and_can_be_cancelled():
