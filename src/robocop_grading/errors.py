@@ -4,15 +4,11 @@ from aro_robocop_goto_as.errors import RobocopError
 
 
 class GradingError(RobocopError):
-    """A submission can't be graded; the subclasses say who can correct that."""
+    """A submission can't be read, built or graded, and its author has to correct it, unless a subclass says who."""
 
 
 class PlanError(GradingError):
     """The grading plan is malformed; its author has to correct the file."""
-
-
-class SubmissionError(GradingError):
-    """A submission can't be read or built; its author has to correct it."""
 
 
 class GradingSetupError(GradingError):
@@ -20,11 +16,7 @@ class GradingSetupError(GradingError):
 
 
 class UngradableError(GradingError):
-    """The grader could not start its part of a run, or a run was ended from outside twice; runs can be repeated."""
-
-
-class NoTimeError(UngradableError):
-    """The machine has no time for a run; it can be repeated when the machine is less busy."""
+    """The grader can't start a run, has no time for it, or was ended from outside twice; the run can be repeated."""
 
 
 class GraderLostError(GradingError):

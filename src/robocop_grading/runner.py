@@ -16,7 +16,7 @@ from robocop_hosting.workspace import compat_folder, places
 
 from . import record as rec
 from .attempts import counting
-from .errors import NoTimeError, UngradableError
+from .errors import UngradableError
 from .faults import changed_sources
 from .packages import provide
 from .plan import AGAIN, Plan
@@ -61,8 +61,8 @@ class Runner:
     def run(self, submission: Submission, script: Script, out: Path) -> Recorded:
         """Run the scenarios of a script's part, which ends whatever the submission does; records and bags go to `out`.
 
-        NoTimeError if the machine has no time for the run; UngradableError if the session can't be started, or the
-        plan's packages can't be provided.
+        UngradableError if the session can't be started or the machine has no time for it, or if the plan's packages
+        can't be provided.
         """
         home = out / "home"
         home.mkdir(parents=True, exist_ok=True)
@@ -99,7 +99,7 @@ class Runner:
     def supervise(self, command: List[str], environment: Dict[str, str], out: Path, part: str) -> Recorded:
         """Start a session, follow what it reports on its standard output, and end it after the budget.
 
-        UngradableError or NoTimeError if the submission is not to blame. A session that fails in another way after it
+        UngradableError if the submission is not to blame. A session that fails in another way after it
         has begun a scenario is judged.
         """
         log = out / f"{part}-session.log"
@@ -118,7 +118,9 @@ class Runner:
                 elif word == "error":
                     raise UngradableError(rest)
             if time.monotonic() >= deadline:
-                raise NoTimeError(f"{part}: not done within {self.budget:g} s, stopped at {scenario or 'its start'}")
+                raise UngradableError(
+                    f"{part}: not done within {self.budget:g} s, stopped at {scenario or 'its start'}"
+                )
             grace = END_TIMEOUT
         finally:
             timer.cancel()
@@ -141,7 +143,8 @@ class Runner:
 
     def _counting(self, out: Path, part: str) -> Tuple[Dict[str, rec.Record], List[str]]:
         """The records that count, whose bags get their scenarios' names, and what to say of repeated scenarios."""
-        records, counted, told = counting(self.plan, records_in(out, part))
+        found = (rec.read(rec.Record, path) for path in sorted(out.glob(f"{part}-*.record")))
+        records, counted, told = counting(self.plan, {record.name: record for record in found})
         for name in counted:
             (out / f"{part}-{name}{AGAIN}.bag").replace(out / f"{part}-{name}.bag")
         return records, told
@@ -149,9 +152,3 @@ class Runner:
 
 def _end_of(log: Path) -> str:
     return " | ".join(map(str.strip, log.read_text(errors="replace").splitlines()[-LOG_LINES:]))[-600:]
-
-
-def records_in(out: Path, part: str) -> Dict[str, rec.Record]:
-    """The records of a part so far, by scenario."""
-    records = [rec.read(rec.Record, path) for path in sorted(out.glob(f"{part}-*.record"))]
-    return {record.name: record for record in records}

@@ -134,7 +134,10 @@ def _ready(
     name: str, top: Path, reads: Sequence[Path], environment: Environment, found: LaunchPlan, is_loose: bool = False
 ) -> Submission:
     scripts = [_script(part, choice, top) for part, choice in found.choices.items()]
-    notes = [*found.notes, *_ungraded_bridge(found.choices)]
+    notes = list(found.notes)
+    if [script.part for script in scripts] == ["server"] and listens_to_clicks(scripts[0].path):
+        file = scripts[0].path.name
+        notes.append(f"bridge: not graded: {file} has a bridge, too; only one with a script of its own can be graded")
     for script in scripts:
         others = ", ".join(str(other.relative_to(top)) for other in found.choices[script.part].others)
         notes += [f"{script.part}: {script.path.relative_to(top)} is graded, but not {others}"] if others else []
@@ -189,12 +192,6 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
             f"file; found: {', '.join(names[:MAX_NAMED]) or 'no Python script'}"
         )
     return _ready(package.path.name, copy, [folder, *below], environment, found)
-
-
-def _ungraded_bridge(choices: Mapping[str, Choice]) -> Iterator[str]:
-    if set(choices) == {"server"} and listens_to_clicks(choices["server"].path):
-        name = choices["server"].path.name
-        yield f"bridge: not graded: {name} has a bridge, too; only one with a script of its own can be graded"
 
 
 def _start_problems(part: str, choice: Choice, is_loose: bool) -> Iterator[str]:

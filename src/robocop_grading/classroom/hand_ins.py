@@ -6,7 +6,7 @@ from typing import Collection, Dict, List, Tuple
 
 from aro_robocop_goto_as.errors import RobocopError
 
-from ..errors import GradingSetupError, SubmissionError
+from ..errors import GradingError, GradingSetupError
 from ..files import unpacking
 from ..files.archives import Unpacked, is_archive
 from ..files.exports import EXPECTED, METADATA, visible
@@ -33,9 +33,9 @@ def collect(folder: Path, reserved: Collection[str] = ()) -> Tuple[Dict[str, str
 
 
 def unpacked(path: Path) -> Unpacked:
-    """The files of a hand-in; SubmissionError if the hand-in can't be graded, or read."""
+    """The files of a hand-in; GradingError if the hand-in can't be graded, or read."""
     is_file = path.is_file() and (path.suffix.lower() == ".py" or is_archive(path.name))
     if path.is_symlink() or not (path.is_dir() or is_file):
         kind = "a link" if path.is_symlink() else f"a {path.suffix} file" if path.suffix else "a file without a suffix"
-        raise SubmissionError(f"{kind}: expected {EXPECTED}")
+        raise GradingError(f"{kind}: expected {EXPECTED}")
     return unpacking.unpack(path)

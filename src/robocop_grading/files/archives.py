@@ -18,7 +18,7 @@ from typing import IO, Any, Callable, Dict, List, NamedTuple
 
 from robocop_hosting import tree
 
-from ..errors import SubmissionError
+from ..errors import GradingError
 
 MB = 1024**2
 MAX_BYTES = 64 * MB  # of a hand-in, without its archives
@@ -51,7 +51,7 @@ class Entry(NamedTuple):
 
 
 class Unpacked:
-    """What was handed in, a file or a folder, in memory; SubmissionError if there is too much."""
+    """What was handed in, a file or a folder, in memory; GradingError if there is too much."""
 
     def __init__(self) -> None:
         self.entries: Dict[str, Entry] = {}  # by path, with slashes; the file or folder itself has an empty one
@@ -62,7 +62,7 @@ class Unpacked:
         """Add an entry, or replace the one of that name."""
         self.entries[path] = entry
         if len(self.entries) > MAX_ENTRIES:
-            raise SubmissionError(TOO_MANY)
+            raise GradingError(TOO_MANY)
 
     def add_file(self, path: str, mode: int, source: "IO[bytes]", size: int) -> None:
         """Add a file, if there is room for it; `size`: its bytes, as it says itself."""
@@ -77,7 +77,7 @@ class Unpacked:
         if len(content) > room:
             sizes = [(len(entry.content), it) for it, entry in self.entries.items()]
             most, largest = max([*sizes, (max(size, len(content)), path)])
-            raise SubmissionError(
+            raise GradingError(
                 f"larger than {limit // MB} MB; the largest file in it is {largest} with {most / MB:.1f} MB"
             )
         self._used[packed] += len(content)
@@ -92,7 +92,7 @@ class Unpacked:
         return sums.hexdigest()
 
     def write(self, top: Path) -> None:
-        """Write it to `top`, which does not exist yet; SubmissionError if that is not possible."""
+        """Write it to `top`, which does not exist yet; GradingError if that is not possible."""
         try:
             for path, (mode, content, target) in sorted(self.entries.items()):
                 place = top / path if path else top
@@ -104,7 +104,7 @@ class Unpacked:
                     place.write_bytes(content)
                     place.chmod(stat.S_IMODE(mode))
         except (OSError, ValueError) as error:  # for example a name that is too long, or a link to one with a zero byte
-            raise SubmissionError(f"can't be unpacked: {error}") from error
+            raise GradingError(f"can't be unpacked: {error}") from error
 
 
 def is_ungraded(name: str, size: int) -> bool:
@@ -123,17 +123,17 @@ def is_left_out(path: PurePosixPath) -> bool:
 
 
 def unpack_archive(file: "IO[bytes]", found: Unpacked, prefix: str = "") -> None:
-    """Add the files and links of a zip or tar archive, each below `prefix`; SubmissionError if that is not possible."""
+    """Add the files and links of a zip or tar archive, each below `prefix`; GradingError if that is not possible."""
     try:
         (_unpack_zip if _is_zip(file) else _unpack_tar)(file, found, prefix)
-    except SubmissionError:
+    except GradingError:
         raise
     except Exception as error:  # zipfile and tarfile document no list of exceptions for malformed files
-        raise SubmissionError(f"can't be unpacked: {error or type(error).__name__}") from error
+        raise GradingError(f"can't be unpacked: {error or type(error).__name__}") from error
     for path in found.entries:
         for folder in map(str, PurePosixPath(path).parents):  # what is below a link would be written elsewhere
             if folder in found.entries and not stat.S_ISDIR(found.entries[folder].mode):
-                raise SubmissionError(f"{path}: {folder} is a file or a link, too")
+                raise GradingError(f"{path}: {folder} is a file or a link, too")
 
 
 def _is_zip(file: "IO[bytes]") -> bool:
@@ -145,7 +145,7 @@ def _is_zip(file: "IO[bytes]") -> bool:
 def _unpack_zip(file: "IO[bytes]", found: Unpacked, prefix: str) -> None:
     end = zipfile._EndRecData(file)  # type: ignore[attr-defined]  # private: nothing public reads only this
     if end and end[DIRECTORY_SIZE] > MAX_DIRECTORY:
-        raise SubmissionError(TOO_MANY)
+        raise GradingError(TOO_MANY)
     with zipfile.ZipFile(file) as archive:
         for info in archive.infolist():
             mode = info.external_attr >> 16
@@ -180,13 +180,13 @@ def _unpack_tar(file: "IO[bytes]", found: Unpacked, prefix: str) -> None:
     # In one piece, as tarfile would read more than fits into memory for some headers.
     plain = (opener(file) if opener else file).read(MAX_PACKED + 1)
     if plain.startswith(tree.POINTER):
-        raise SubmissionError(tree.IS_POINTER)
+        raise GradingError(tree.IS_POINTER)
     if len(plain) > MAX_PACKED:
-        raise SubmissionError(f"larger than {MAX_PACKED // MB} MB")
+        raise GradingError(f"larger than {MAX_PACKED // MB} MB")
     try:
         archive = tarfile.open(fileobj=io.BytesIO(plain), mode="r:")
     except tarfile.ReadError:
-        raise SubmissionError("neither a zip nor a tar archive") from None
+        raise GradingError("neither a zip nor a tar archive") from None
     for member in archive:
         if member.isdir() or is_left_out(PurePosixPath(member.name)):
             continue
@@ -197,9 +197,9 @@ def _unpack_tar(file: "IO[bytes]", found: Unpacked, prefix: str) -> None:
         try:
             source = archive.extractfile(member)  # of a hard link: the file's that it is another name of
         except KeyError:
-            raise SubmissionError(f"{member.name}: a hard link to {member.linkname}, which is not in it") from None
+            raise GradingError(f"{member.name}: a hard link to {member.linkname}, which is not in it") from None
         if source is None:
-            raise SubmissionError(f"{member.name}: expected a file, folder or link")
+            raise GradingError(f"{member.name}: expected a file, folder or link")
         found.add_file(path, _file_mode(member.mode), source, member.size)
 
 
@@ -210,7 +210,7 @@ def _file_mode(mode: int) -> int:
 def _path(name: str, prefix: str) -> str:
     path = PurePosixPath(name)
     if ".." in path.parts or path.is_absolute() or not path.parts or "\0" in name:
-        raise SubmissionError(f"{name}: expected a path within the archive")
+        raise GradingError(f"{name}: expected a path within the archive")
     if len(path.parts) > tree.MAX_DEPTH:
-        raise SubmissionError(f"expected at most {tree.MAX_DEPTH} nested folders")
+        raise GradingError(f"expected at most {tree.MAX_DEPTH} nested folders")
     return str(PurePosixPath(prefix, path))

@@ -9,7 +9,7 @@ from typing import Dict, List
 
 from robocop_hosting import tree
 
-from ..errors import SubmissionError
+from ..errors import GradingError
 from .archives import FOLDER, LEFT_OUT, Entry, Unpacked, is_archive, is_left_out, unpack_archive
 
 MAX_NESTED = 3  # archives, one inside another, in what was handed in
@@ -21,7 +21,7 @@ TYPES = (stat.S_IFREG, stat.S_IFDIR, stat.S_IFLNK)
 
 
 def unpack(path: Path) -> Unpacked:
-    """Unpack a file, archive or folder; SubmissionError if it can't be read, or has nothing to grade."""
+    """Unpack a file, archive or folder; GradingError if it can't be read, or has nothing to grade."""
     found = Unpacked()
     try:
         if is_archive(path.name) and path.is_file():
@@ -31,9 +31,9 @@ def unpack(path: Path) -> Unpacked:
         else:
             _add_from_disk(path, found)
         if path.is_dir() and not os.listdir(path):
-            raise SubmissionError("the folder is empty")
+            raise GradingError("the folder is empty")
     except OSError as error:
-        raise SubmissionError(f"can't be read: {error}") from error
+        raise GradingError(f"can't be read: {error}") from error
     _unpack_nested(found)
     found.notes = [*_notes(found.entries), *found.notes]
     return found
@@ -54,7 +54,7 @@ def _add_from_disk(path: Path, found: Unpacked) -> None:
         name, status = "" if inner == path else inner.relative_to(path).as_posix(), os.lstat(inner)
         mode = status.st_mode
         if stat.S_IFMT(mode) not in TYPES:
-            raise SubmissionError(f"{name}: expected a file, folder or link")
+            raise GradingError(f"{name}: expected a file, folder or link")
         if is_left_out(PurePosixPath(name)):
             continue
         if stat.S_ISREG(mode):
@@ -72,8 +72,8 @@ def _unpack_nested(found: Unpacked) -> None:
         for path in archives:
             try:
                 unpack_archive(io.BytesIO(found.entries.pop(path).content), found, path)
-            except SubmissionError as error:
-                raise SubmissionError(f"{path}: {error}") from error
+            except GradingError as error:
+                raise GradingError(f"{path}: {error}") from error
 
 
 def _files(entries: Dict[str, Entry]) -> List[str]:
@@ -85,7 +85,7 @@ def _has_something_to_grade(entries: Dict[str, Entry]) -> bool:
 
 
 def _notes(entries: Dict[str, Entry]) -> List[str]:
-    """Notes about archives that were not unpacked; SubmissionError if there is nothing to grade."""
+    """Notes about archives that were not unpacked; GradingError if there is nothing to grade."""
     files = _files(entries)
     reason = "what is graded is outside of it" if _has_something_to_grade(entries) else "more than three in one another"
     notes = [f"{path} was not unpacked: {reason}" for path in files if is_archive(path)]
@@ -96,5 +96,5 @@ def _notes(entries: Dict[str, Entry]) -> List[str]:
         problem = (
             f"no package and no Python file in it, only {found}" if files else "no file in it, but for build products"
         )
-        raise SubmissionError("; ".join([problem, *notes]))
+        raise GradingError("; ".join([problem, *notes]))
     return notes

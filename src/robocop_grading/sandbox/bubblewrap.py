@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from ..errors import GradingError, NoTimeError
+from ..errors import GradingError, UngradableError
 from . import limits
 
 FIRST_USER = 200_000  # uid and gid, above those in use; root would be exempt from process limits
@@ -159,7 +159,7 @@ def _mounts(option: str, paths: Iterable[Path]) -> List[str]:
 
 
 def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
-    """The sandbox, or None if `unsafe`; GradingError if bubblewrap can't run, NoTimeError if a trial takes too long."""
+    """The sandbox, or None if `unsafe`; GradingError if bubblewrap can't run, or not in time."""
     if unsafe:
         return None
     advice = "--unsafe runs the submission without it, with all your rights"
@@ -172,7 +172,7 @@ def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
     try:
         done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL_TIME)
     except subprocess.TimeoutExpired as error:
-        raise NoTimeError(f"bubblewrap did not run within {TRIAL_TIME:g} s") from error
+        raise UngradableError(f"bubblewrap did not run within {TRIAL_TIME:g} s") from error
     if done.returncode != 0:
         if any(map(os.path.exists, CONTAINER_MARKS)):
             advice = f"`docker run {CONTAINER_OPTIONS}` lets it run in a container; {advice}"

@@ -20,7 +20,7 @@ from ..handout import ACTION, CLICKS
 from ..plan import TICK
 from ..sites import SITE
 from .goals import Goals
-from .job import Job
+from .job import Job, send_to_grader
 from .run import Run
 from .stage import Stage
 
@@ -67,7 +67,7 @@ class BridgeRun(Run):
         """Run the scenarios up to the last one that a check examines: each begins where the previous one ended."""
         for name in self.plan.scenarios_of(self.job.part):
             scenario = getattr(self, f"_{name}")
-            self.announce(name)
+            send_to_grader(f"begin {name}")
             scenario()
 
     # -- the server that it talks to --
@@ -85,15 +85,12 @@ class BridgeRun(Run):
         message.goal_id = self.server.identified(message.goal_id)
         position, name = message.goal.position, message.goal_id.id
         self.add("goals", rec.SentGoal(name, position.x, position.y, self.stage.now, ""))
-        stamp = message.goal_id.stamp.to_sec()
-        # At a tick, requests are handled first.
-        if any(cancel.id == name or 0.0 < stamp <= cancel.stamp for cancel in self.entries["cancels"]):
-            self.add("statuses", rec.Status(self.stage.now, name, rec.RECALLED))
-        if self.server.add(message):
-            self.add("statuses", rec.Status(self.stage.now, name, rec.PENDING))
-            if self.accepts:
-                self.server.accept(name)
-                self.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
+        state = self.server.add(message)
+        if state is not None:
+            self.add("statuses", rec.Status(self.stage.now, name, state))
+        if state == rec.PENDING and self.accepts:
+            self.server.accept(name)
+            self.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
 
     def _on_cancel(self, message: GoalID) -> None:
         """Preempt the goals that a cancel request is for.
@@ -104,14 +101,10 @@ class BridgeRun(Run):
         self.add("cancels", rec.Cancel(self.stage.now, message.id, message.stamp.to_sec()))
         if self.server is None:
             return
-        self.server.request_cancel(message)
-        for goal in self.entries["goals"]:
-            known = self.server.running().get(goal.id)
-            everything = not message.id and not message.stamp and goal.time < self.stage.now - 1e-6
-            earlier = bool(message.stamp) and known is not None and known.stamp <= message.stamp
-            if known is not None and (message.id == goal.id or everything or earlier):
-                state = self.server.cancel(goal.id, GoToPositionResult(False, "cancelled"))
-                self.add("statuses", rec.Status(self.stage.now, goal.id, state))
+        of_this_tick = {goal.id for goal in self.entries["goals"] if goal.time > self.stage.now - 1e-6}
+        for name in self.server.request_cancel(message, of_this_tick):
+            state = self.server.cancel(name, GoToPositionResult(False, "cancelled"))
+            self.add("statuses", rec.Status(self.stage.now, name, state))
 
     def _finish_goals(self, status: int = rec.SUCCEEDED) -> None:
         """Let all goals end in a state."""
@@ -142,7 +135,7 @@ class BridgeRun(Run):
     def _subscribe_to_reports(self) -> None:
         """Record published states like logged lines; their topics may appear at any time."""
         reports = [name for name, topic in self.topics.published.items() if topic.type in STATUS_TYPES]
-        for name in sorted(it for it in reports if not self.topics.listens_to(it)):
+        for name in sorted(set(reports) - self.reports):
             kind = roslib.message.get_message_class(self.topics.published[name].type)
             self.topics.subscribe(name, kind, self._on_line, partial(_text, f"published on {name}"))
             self.reports.add(name)

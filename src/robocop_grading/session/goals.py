@@ -1,6 +1,6 @@
 """The goals that a bridge has sent, published as an action server would; callers decide what becomes of the goals."""
 
-from typing import Any, Callable, Dict
+from typing import Any, Callable, Container, Dict, List, Optional
 
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
@@ -46,23 +46,20 @@ class Goals:
         self._made += not goal_id.id
         return GoalID(goal_id.stamp or self._stamp(), goal_id.id or f"{ACTION}-{self._made}")
 
-    def add(self, goal: GoToPositionActionGoal) -> bool:
-        """Add a goal that has come; return whether it is PENDING now. A known or already cancelled goal is not."""
+    def add(self, goal: GoToPositionActionGoal) -> Optional[int]:
+        """Add a goal that has come; return its state: PENDING, RECALLED if it was cancelled before, None if known."""
         name, stamp = goal.goal_id.id, goal.goal_id.stamp
         known = self._statuses.get(name)
-        if known is not None:
-            if known.status == GoalStatus.RECALLING:
-                self.cancel(name, GoToPositionResult())
-            return False
+        if known is not None and known.status != GoalStatus.RECALLING:
+            return None
         self._statuses[name] = GoalStatus(goal.goal_id, GoalStatus.PENDING, "")
-        if stamp and stamp <= self._last_cancel:
-            self._end(name, GoalStatus.RECALLED, GoToPositionResult())
-            return False
-        return True
+        if known is None and not (stamp and stamp <= self._last_cancel):
+            return int(GoalStatus.PENDING)
+        return self.cancel(name, GoToPositionResult())
 
-    def running(self) -> Dict[str, GoalID]:
-        """The goals that have not ended, by id."""
-        return {name: status.goal_id for name, status in self._statuses.items() if name not in self._ended}
+    def running(self) -> List[str]:
+        """The ids of the goals that have not ended."""
+        return [name for name in self._statuses if name not in self._ended]
 
     def accept(self, name: str) -> None:
         """Make a goal ACTIVE."""
@@ -74,18 +71,24 @@ class Goals:
         feedback.header.stamp = self._stamp()
         self._publish(f"{ACTION}/feedback", feedback)
 
-    def request_cancel(self, request: GoalID) -> None:
-        """Note a cancel request for each of its goals, also for a goal that is still to come."""
-        everything = not request.id and not request.stamp
-        for status in list(self._statuses.values()):
+    def request_cancel(self, request: GoalID, spared: Container[str] = ()) -> List[str]:
+        """Note a cancel request, also for a goal of its id that is still to come; return its goals that have not ended.
+
+        spared: goals that a request for all goals is not for
+        """
+        everything, names = not request.id and not request.stamp, []
+        for name, status in list(self._statuses.items()):
             before = bool(request.stamp) and status.goal_id.stamp <= request.stamp
-            if (everything or before or request.id == status.goal_id.id) and status.status in REQUESTED:
+            is_for = request.id == name or before or (everything and name not in spared)
+            if is_for and status.status in REQUESTED:
+                names.append(name)
                 status.status = REQUESTED[status.status]
                 self.publish_status()
         if request.id and request.id not in self._statuses:
             self._statuses[request.id] = GoalStatus(request, GoalStatus.RECALLING, "")
             self._ended[request.id] = self._stamp()
         self._last_cancel = max(self._last_cancel, request.stamp)
+        return names
 
     def cancel(self, name: str, result: GoToPositionResult) -> int:
         """End a goal as cancelled; return its state: RECALLED if it was not accepted, else PREEMPTED."""

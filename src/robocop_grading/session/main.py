@@ -16,21 +16,17 @@ def main() -> None:
     """Usage: main JOB."""
     begin_to_tell()
     try:
-        _run(read(Job, Path(sys.argv[1])))
+        job, stage = read(Job, Path(sys.argv[1])), Stage()
+        run: Run = (ServerRun if job.part == "server" else BridgeRun)(job, stage)
+        try:
+            run.scenarios()
+        finally:
+            run.close()
     except GraderLostError as error:
         sys.exit(str(error))
     except OSError as error:  # a full disk, for example: nothing that a node can bring about
         send_to_grader(f"error {error}")
         sys.exit(1)
-
-
-def _run(job: Job) -> None:
-    stage = Stage()
-    run: Run = (ServerRun if job.part == "server" else BridgeRun)(job, stage)
-    try:
-        run.scenarios()
-    finally:
-        run.close()
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """The messages of one step: their bytes go to the node and into the bag."""
 
-from typing import Any, Dict, List, NamedTuple, Tuple
+from typing import Any, Dict, List, Tuple
 
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -14,13 +14,7 @@ from aro_robocop_goto_as.sensors.odometry import ODOM
 from aro_robocop_goto_as.simulation.agenda import Due
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
-
-class StepMessage(NamedTuple):
-    """A message as it is sent, with its length."""
-
-    topic: str
-    kind: Any
-    data: bytes
+StepMessage = Tuple[str, Any, bytes]  # topic, type, and the message as it is sent, with its length
 
 
 class StepMessages:
@@ -43,7 +37,7 @@ class StepMessages:
             self._prepared[due] = messages, Batch([], filled=packed)
         messages, batch = self._prepared[due]
         batch.send(self._simulator.stamp_ns)
-        return [StepMessage(topic, kind, self._bytes_of(message)) for topic, kind, message in messages]
+        return [(topic, kind, self._bytes_of(message)) for topic, kind, message in messages]
 
     def _bytes_of(self, message: Any) -> bytes:
         if not isinstance(message, PackedMessage):

@@ -7,7 +7,7 @@ import pytest
 from support import ROOT
 
 from robocop_grading import cli
-from robocop_grading.errors import GradingError, NoTimeError, PlanError
+from robocop_grading.errors import GradingError, PlanError, UngradableError
 from robocop_hosting.errors import HostingError
 
 REPORTS = Path("/reports")
@@ -50,7 +50,7 @@ def status(error, tmp_path, monkeypatch, capsys, *arguments):
     "error, expected",
     [
         (PlanError("the plan"), 2),
-        (NoTimeError("no time"), 3),
+        (UngradableError("no time"), 3),
         (GradingError("no server"), 4),
         (HostingError("no package"), 4),
         (ZeroDivisionError("a mistake of the grader"), 3),

@@ -6,14 +6,14 @@ from types import SimpleNamespace
 import pytest
 
 from robocop_grading.classroom import cluster
-from robocop_grading.errors import NoTimeError
+from robocop_grading.errors import UngradableError
 
 
 @pytest.mark.parametrize(
     "status, error, problem",
     [
         ("finished", None, ""),
-        ("error", NoTimeError("the machine is busy"), "no grade: the machine is busy"),
+        ("error", UngradableError("the machine is busy"), "no grade: the machine is busy"),
         ("error", ZeroDivisionError("by 0"), "could not be graded: ZeroDivisionError: by 0"),
         ("lost", None, "no grade: the connection to the scheduler was lost"),
     ],

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from robocop_grading.cli import unpacked_path
-from robocop_grading.errors import GradingError, SubmissionError
+from robocop_grading.errors import GradingError
 from robocop_grading.files import archives, unpacking
 from robocop_hosting import tree
 
@@ -163,7 +163,7 @@ def test_what_can_not_be_graded_states_what_was_found(files, problem, tmp_path, 
     monkeypatch.setattr(archives, "MAX_BYTES", 10_000)
     monkeypatch.setattr(archives, "MAX_PACKED", 1024**2)
     monkeypatch.setattr(archives, "MAX_ENTRIES", 20)
-    with pytest.raises(SubmissionError) as error:
+    with pytest.raises(GradingError) as error:
         unpacking.unpack(written(tmp_path / "eve", files))
     assert problem in str(error.value)
 
@@ -173,7 +173,7 @@ def test_archives_one_in_another_are_unpacked_to_a_sensible_depth(tmp_path):
     for _ in range(unpacking.MAX_NESTED + 1):
         content = zipped({"in.zip": content})
     (tmp_path / "eve.zip").write_bytes(content)
-    with pytest.raises(SubmissionError, match="only in.zip/in.zip/in.zip/in.zip; .* more than three in one another"):
+    with pytest.raises(GradingError, match="only in.zip/in.zip/in.zip/in.zip; .* more than three in one another"):
         unpacking.unpack(tmp_path / "eve.zip")
 
 
@@ -191,13 +191,13 @@ def test_archive_that_would_write_or_read_elsewhere_is_refused(files, tmp_path):
     (tmp_path / "eve.tar").write_bytes(tarred(files))
     (tmp_path / "eve.zip").write_bytes(zipped(dict.fromkeys(["x.py", "../evil.py"], b"")))
     for name in ("eve.tar", "eve.zip"):
-        with pytest.raises(SubmissionError):
+        with pytest.raises(GradingError):
             unpacking.unpack(tmp_path / name)
 
 
 def test_hard_link_out_of_an_archive_is_named_with_where_it_leads(tmp_path):
     (tmp_path / "eve.tar").write_bytes(tarred({"hard": link("hard", "/etc/passwd", tarfile.LNKTYPE)}))
-    with pytest.raises(SubmissionError, match="hard: a hard link to /etc/passwd, which is not in it"):
+    with pytest.raises(GradingError, match="hard: a hard link to /etc/passwd, which is not in it"):
         unpacking.unpack(tmp_path / "eve.tar")
 
 
@@ -216,7 +216,7 @@ def test_large_video_beside_a_solution_is_left_out_and_named(pack, tmp_path):
 def test_link_that_no_disk_can_hold_is_refused(target, tmp_path):
     found = archives.Unpacked()
     found.entries = {"": archives.Entry(archives.FOLDER), "a": archives.Entry(archives.LINK, target=target)}
-    with pytest.raises(SubmissionError, match="can't be unpacked"):
+    with pytest.raises(GradingError, match="can't be unpacked"):
         found.write(tmp_path / "eve")
 
 

@@ -29,7 +29,7 @@ def table():
 
 
 def test_a_goal_goes_from_pending_to_its_end_and_is_forgotten_some_time_later(table):
-    assert table.add(goal("a")) and not table.add(goal("a"))
+    assert table.add(goal("a")) == GoalStatus.PENDING and table.add(goal("a")) is None
     table.publish_status()
     assert table.states() == [("a", GoalStatus.PENDING)]
     table.accept("a")
@@ -55,7 +55,7 @@ def test_a_goal_that_is_cancelled_ends_by_whether_it_was_accepted(request_, acce
     table.add(goal("a"))
     if accepted:
         table.accept("a")
-    table.request_cancel(request_)
+    assert table.request_cancel(request_) == ["a"] and table.request_cancel(request_) == []
     table.cancel("a", GoToPositionResult(False, "cancelled"))
     assert table.last["result"].status.status == end
 
@@ -69,7 +69,15 @@ def test_goals_without_an_id_get_one_each_and_the_time_of_their_arrival(table):
 
 def test_a_goal_that_was_cancelled_before_it_came_is_recalled(table):
     table.request_cancel(GoalID(id="a"))
-    assert not table.add(goal("a")) and table.states() == [("a", GoalStatus.RECALLED)]
+    assert table.add(goal("a")) == GoalStatus.RECALLED and table.states() == [("a", GoalStatus.RECALLED)]
     table.request_cancel(GoalID(stamp=rospy.Time(70)))
-    assert not table.add(goal("b")) and ("b", GoalStatus.RECALLED) in table.states()
-    assert table.add(goal("c", 80))
+    assert table.add(goal("b")) == GoalStatus.RECALLED and ("b", GoalStatus.RECALLED) in table.states()
+    assert table.add(goal("c", 80)) == GoalStatus.PENDING
+
+
+def test_a_request_for_all_goals_spares_those_that_are_named_and_one_for_a_goal_does_not(table):
+    for name in ("a", "b"):
+        table.add(goal(name))
+    assert table.request_cancel(GoalID(), spared={"b"}) == ["a"]
+    assert table.states() == [("a", GoalStatus.RECALLING), ("b", GoalStatus.PENDING)]
+    assert table.request_cancel(GoalID(id="b"), spared={"b"}) == ["b"]
