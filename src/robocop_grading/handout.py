@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from aro_robocop_goto_as.param_loading import parameter
 
 ACTION = "/robocop_goto_as"
-CLICKS = "/move_base_simple/goal"  # where RViz publishes a 2D Nav Goal
+CLICK_TOPIC = "/move_base_simple/goal"  # where RViz publishes a 2D Nav Goal
 GOAL_RADIUS = 0.1  # [m] a smaller position_error means that the goal is reached
 HEADING_TOLERANCE = 0.1  # [rad] within it the robot drives straight, beyond it the robot turns
 STOP_DISTANCE = 0.3  # [m] a closer obstacle ahead aborts the goal

@@ -175,7 +175,7 @@ class Record:
     clicks: Tuple[Click, ...] = ()
     lines: Tuple[Line, ...] = ()
     deaths: Tuple[Death, ...] = ()
-    marks: Dict[str, float] = field(default_factory=dict)  # named moments of the scenario [s]
+    marks: Dict[str, float] = field(default_factory=dict)  # moments of the scenario [s]; flags are 0 or 1
 
     def results_of(self, goal: SentGoal) -> List[Result]:
         """The results of a goal in order of arrival; a correct server sends one."""

@@ -1,4 +1,4 @@
-"""Where scenarios take place: all of a server's at one place in the world, so that the place does not name them."""
+"""Where scenarios take place: a server's all at one pose in the world, so that the pose reveals none of them."""
 
 from typing import Sequence
 

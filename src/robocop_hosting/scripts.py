@@ -21,8 +21,8 @@ PARTS = {"robocop_goto_as.py": "server", "robocop_rviz_goto_ac.py": "bridge"}  #
 NODE_NAMES = {"server": SERVER, "bridge": BRIDGE}
 SERVERS, CLIENTS = {"SimpleActionServer", "ActionServer"}, {"SimpleActionClient", "ActionClient"}
 RAW = {"GoToPositionActionGoal", "GoToPositionActionResult"}  # what a server without actionlib uses
-CLICKS = "move_base_simple"
-HINTS = (b"ActionServer", b"ActionClient", b"GoToPositionAction", CLICKS.encode())
+CLICK_WORD = "move_base_simple"
+HINTS = (b"ActionServer", b"ActionClient", b"GoToPositionAction", CLICK_WORD.encode())
 # In a path: a copy, or something that is not meant to be started.
 ASIDE = re.compile(r"(^|[^a-z])(backups?|bak|old|orig|copy|copies|archive|trash|tests?)([^a-z]|$)", re.I)
 # After #!: env takes the rest of the line as one word, except after -S.
@@ -87,7 +87,7 @@ def _part_by_content(content: bytes) -> Tuple[str, bool]:
     if not any(hint in content for hint in HINTS):
         return "", False
     words = _names_in(content.decode(errors="replace"))
-    has_clicks = any(CLICKS in word for word in words)
+    has_clicks = any(CLICK_WORD in word for word in words)
     if words & SERVERS or (words >= RAW and not has_clicks and not words & CLIENTS):
         return "server", True
     return ("bridge", has_clicks) if has_clicks or words & CLIENTS else ("", False)
@@ -95,7 +95,7 @@ def _part_by_content(content: bytes) -> Tuple[str, bool]:
 
 def listens_to_clicks(path: Path) -> bool:
     """Return whether a program names the topic of 2D Nav Goals."""
-    return any(CLICKS in word for word in _names_in(read_bytes(path).decode(errors="replace")))
+    return any(CLICK_WORD in word for word in _names_in(read_bytes(path).decode(errors="replace")))
 
 
 def _names_in(code: str) -> Set[str]:

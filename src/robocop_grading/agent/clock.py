@@ -12,21 +12,21 @@ _real = {
     for name in "time_ns monotonic_ns sleep localtime gmtime clock_gettime_ns strftime asctime".split()
 }
 
-LOOKS, LOOKS_TIME = 100, 0.001  # a thread's looks at clocks at one time, and the pause [s] after them: 10 us each
+READS, READS_TIME = 100, 0.001  # clock reads of a thread at one simulated time, and its pause [s] after them
 
 
-def looked() -> None:
-    """Note that a thread has looked at a clock: simulated time goes on for a loop that waits by looking at a clock."""
-    scheduler.spend(1.0 / LOOKS, LOOKS_TIME)
+def note_read() -> None:
+    """Note that a thread has read a clock: simulated time goes on for a loop that waits by reading a clock."""
+    scheduler.spend(1.0 / READS, READS_TIME)
 
 
 def time_ns() -> int:
-    looked()
+    note_read()
     return scheduler.epoch_ns + scheduler.now_ns if scheduler.active else int(_real["time_ns"]())
 
 
 def monotonic_ns() -> int:
-    looked()
+    note_read()
     return scheduler.epoch_monotonic_ns + scheduler.now_ns if scheduler.active else int(_real["monotonic_ns"]())
 
 
@@ -43,7 +43,7 @@ def sleep(seconds: float) -> None:
         scheduler.pause(scheduler.deadline(seconds))
     elif scheduler.active and seconds == 0:
         scheduler.yield_turn()
-        looked()  # a loop that waits in this way
+        note_read()  # a loop that waits in this way
     else:
         _real["sleep"](seconds)  # also complains of a negative time
 

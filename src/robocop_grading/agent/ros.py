@@ -86,7 +86,7 @@ def install(shown: RosClock) -> None:
     for module in (rospy, rospy.timer):
         module.sleep = _sleeping(rospy.timer.sleep, shown)
     for module in (rospy, rospy.rostime):
-        module.get_rostime = _then(rospy.rostime.get_rostime, clock.looked)
+        module.get_rostime = _then(rospy.rostime.get_rostime, clock.note_read)
     rospy.Publisher.publish = _then(rospy.Publisher.publish, lambda: scheduler.spend(1.0 / MESSAGES, MESSAGES_TIME))
 
 

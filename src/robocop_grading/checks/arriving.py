@@ -26,7 +26,7 @@ def reaches_goal(record: Record, limits: Limits) -> Verdict:
 
 
 def _success_too_late(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
-    """Name the failure of a robot that drives on although it is close enough for success."""
+    """The failure of a robot that drives on although it is close enough for success."""
     end = record.active_until(goal)
     way = [(sample.time, goal.errors_at(sample)[0]) for sample in record.samples_between(goal.time, end)]
     for (before, far), (after, near) in zip(way, way[1:]):
@@ -74,7 +74,7 @@ def goal_behind(record: Record, limits: Limits) -> Verdict:
 
 
 def _long_turn(record: Record, goal: SentGoal) -> Optional[Failed]:
-    """Name the failure of a robot that turned by much more than needed on its way to the goal."""
+    """The failure of a robot that turned by much more than needed on its way to the goal."""
     samples = record.samples_between(goal.time, record.active_until(goal))
     there = next((number for number, it in enumerate(samples) if goal.errors_at(it)[0] < GOAL_RADIUS), len(samples))
     samples = samples[:there]
@@ -105,7 +105,7 @@ def already_there(record: Record, limits: Limits) -> Verdict:
 
 
 def _not_at_once(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
-    """Name the failure of a robot that takes long or moves although it is at the goal."""
+    """The failure of a robot that takes long or moves although it is at the goal."""
     end = record.active_until(goal)
     samples = record.samples_between(goal.time, end + limits.stop_within)
     moved = max((math.hypot(s.x - samples[0].x, s.y - samples[0].y) for s in samples), default=0.0)

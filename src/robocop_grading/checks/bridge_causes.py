@@ -6,7 +6,7 @@ from typing import Dict, Sequence
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 
-from ..handout import ACTION, CLICKS
+from ..handout import ACTION, CLICK_TOPIC
 from ..record import Cancel, Click, Record, SentGoal
 from .node_lifetime import closest
 from .output import NOT_IMPORTED, UNKNOWN_TYPE, logged
@@ -85,12 +85,12 @@ def missing_connection(record: Record) -> str:
     if not has_client(record):  # first: a bridge waiting for a misspelt server has no subscriber either
         return unconnected(record)
     if not record.marks.get("listeners", 1.0):
-        other = wrong_type(record, CLICKS, *ACTION_TOPICS)  # the latter: it may wait for the server before
+        other = wrong_type(record, CLICK_TOPIC, *ACTION_TOPICS)  # the latter: it may wait for the server before
         if other:
             return other
-        similar = closest(CLICKS, record.unpublished)
+        similar = closest(CLICK_TOPIC, record.unpublished)
         but = f" but to {similar}" if similar else ""
-        return f"The node does not subscribe to {CLICKS}{but}: is the name right?"
+        return f"The node does not subscribe to {CLICK_TOPIC}{but}: is the name right?"
     return NOT_IMPORTED if logged(record, UNKNOWN_TYPE) else NOTHING_SENT
 
 

@@ -84,7 +84,7 @@ def _began(lines: List[Line]) -> List[float]:
 
 
 def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
-    """Name the failure: too few reports while a goal is active, or untrue reports."""
+    """The failure: too few reports while a goal is active, or untrue reports."""
     start, lines = record.marks["watching"], _watched(record)
     count = len(_began([line for line in lines if not _says_nothing(line)]))
     if count >= limits.status_reports:
@@ -181,7 +181,7 @@ def _state_names(states: Set[int]) -> str:
 
 
 def wrong_state_reported(record: Record) -> Optional[Failed]:
-    """Name the failure if, in some interval with two reports or more, most of them name other states.
+    """The failure if, in some interval with two reports or more, most of them name other states.
 
     Only reports with actionlib's names or numbers are judged. A bridge that always names the same state passes if its
     other words tell a running goal from one that has ended.
@@ -216,7 +216,7 @@ def _untrue_cause(record: Record, intervals: Sequence[StateInterval], wrong: Sta
 
 
 def _reports_stopped(record: Record, began: List[float]) -> Optional[Failed]:
-    """Name the failure of a bridge that reports nothing of a later goal; `began`: its reports of the first one [s]."""
+    """The failure of a bridge that reports nothing of a later goal; `began`: its reports of the first one [s]."""
     period = median([later - time for time, later in zip(began, began[1:])] or [math.inf])
     for it in _state_intervals(record):
         watched = it.true == ACTIVE and 2.0 * period + SETTLED < it.end - it.start < math.inf

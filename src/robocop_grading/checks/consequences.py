@@ -157,11 +157,11 @@ class Row(NamedTuple):
     when: Optional[Callable[[Record, Failed, Failed], bool]] = None  # the later check's record, and both failures
 
 
-ENDINGS = (
+GOAL_CHECKS = (
     "reaches_goal goal_behind far_goal already_there stops_at_obstacle only_ahead_counts odd_scans cancel newer_goal "
     "next_goal"
 )
-CLICKS = "forwards_goal reports_status cancels_older waits_for_server goal_frame"
+BRIDGE_CHECKS = "forwards_goal reports_status cancels_older waits_for_server goal_frame"
 
 # A failure, or a check that is not reached, follows from the first row that applies to it.
 FOLLOWS = (
@@ -179,19 +179,22 @@ FOLLOWS = (
     # How goals end.
     Row("only_ahead_counts", Kind.ABORTED, "stops_at_obstacle", too_early_elsewhere),
     Row(
-        f"{ENDINGS} turns_to_goal success_result failure_result stands_at_end one_ending", None, "no_exception", raised
+        f"{GOAL_CHECKS} turns_to_goal success_result failure_result stands_at_end one_ending",
+        None,
+        "no_exception",
+        raised,
     ),
     Row("success_result failure_result", Kind.NO_MESSAGE, "one_ending", no_state_set),
-    Row(ENDINGS, Kind.NO_RESULT, "stays_alive", died),
-    Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_rate", never_reported_near),
-    Row(ENDINGS, Kind.TOO_FAR, "feedback_position", reported_near),
-    Row(ENDINGS, Kind.SUCCEEDED, "feedback_position", reported_near),
-    Row(ENDINGS, Kind.NO_RESULT, "feedback_position", near_without_report),
-    Row(ENDINGS, Kind.SUCCESS_LATE, "feedback_position", near_without_report),
-    Row(f"{ENDINGS} turns_to_goal drives_straight", None, "feedback_angle", misled),
-    Row(ENDINGS, Kind.NO_RESULT, "turns_to_goal", never_came_near),
-    Row(ENDINGS, Kind.NO_RESULT, "drives_straight", never_came_near),
-    Row(ENDINGS, None, "reaches_goal", same_kind),
+    Row(GOAL_CHECKS, Kind.NO_RESULT, "stays_alive", died),
+    Row(GOAL_CHECKS, Kind.SUCCESS_LATE, "feedback_rate", never_reported_near),
+    Row(GOAL_CHECKS, Kind.TOO_FAR, "feedback_position", reported_near),
+    Row(GOAL_CHECKS, Kind.SUCCEEDED, "feedback_position", reported_near),
+    Row(GOAL_CHECKS, Kind.NO_RESULT, "feedback_position", near_without_report),
+    Row(GOAL_CHECKS, Kind.SUCCESS_LATE, "feedback_position", near_without_report),
+    Row(f"{GOAL_CHECKS} turns_to_goal drives_straight", None, "feedback_angle", misled),
+    Row(GOAL_CHECKS, Kind.NO_RESULT, "turns_to_goal", never_came_near),
+    Row(GOAL_CHECKS, Kind.NO_RESULT, "drives_straight", never_came_near),
+    Row(GOAL_CHECKS, None, "reaches_goal", same_kind),
     Row("feedback_rate turns_to_goal cancel newer_goal", None, "reaches_goal", nothing_published),
     Row("turns_to_goal", Kind.MOVES_FIRST, "already_there", same_kind),
     Row("stops_at_obstacle", Kind.MOVES_FIRST, "already_there", same_kind),
@@ -205,8 +208,8 @@ FOLLOWS = (
     Row("goal_behind newer_goal", None, "next_goal", same_kind),
     Row("next_goal", None, "reaches_goal"),
     # The bridge.
-    Row(CLICKS, Kind.NO_GOAL, "bridge_alive"),
-    Row(CLICKS, Kind.NO_REPORT, "bridge_alive"),
+    Row(BRIDGE_CHECKS, Kind.NO_GOAL, "bridge_alive"),
+    Row(BRIDGE_CHECKS, Kind.NO_REPORT, "bridge_alive"),
     Row("cancels_older waits_for_server goal_frame", None, "forwards_goal", same_kind),
     Row("goal_frame", None, "cancels_older", same_kind),
     # What a check needs to be reached.
@@ -219,7 +222,7 @@ FOLLOWS = (
         Kind.NOT_REACHED,
         "reaches_goal",
     ),
-    Row(ENDINGS, Kind.NOT_REACHED, "stays_alive"),
-    Row(CLICKS, Kind.NOT_REACHED, "bridge_alive"),
-    Row(CLICKS, Kind.NOT_REACHED, "forwards_goal"),
+    Row(GOAL_CHECKS, Kind.NOT_REACHED, "stays_alive"),
+    Row(BRIDGE_CHECKS, Kind.NOT_REACHED, "bridge_alive"),
+    Row(BRIDGE_CHECKS, Kind.NOT_REACHED, "forwards_goal"),
 )

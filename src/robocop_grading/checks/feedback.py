@@ -161,7 +161,7 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
 
 
 def _old(record: Record, index: int) -> Optional[Failed]:
-    """Name the failure of feedback that was true an iteration ago."""
+    """The failure of feedback that was true an iteration ago."""
     age = age_of([record], index, AGES)
     if age is None or _is_shifted(record, index):
         return None

@@ -11,7 +11,7 @@ from .feedback_hypotheses import ANGLE, CAUSES, FROM_ORIGIN, IN_DEGREES, POSITIO
 # [m], [rad] within which a value fits a hypothesis
 TOLERANCES = Limits().position_tolerance, Limits().angle_tolerance
 MAX_WRONG = 0.1  # share of a scenario's values that may not fit: single ones when a turn ends
-MAX_WRONG_TIME = 0.45  # [s] longest row of values that may not fit
+MAX_UNFITTED_TIME = 0.45  # [s] longest row of values that may not fit
 MAX_UNEXPLAINED = 0.3  # share of all wrong values
 MAX_PAIRS = 100  # of a scenario that are compared
 LARGE = 7.0  # [m], [rad] larger values are squared or in degrees; the tolerances are then ten times as large
@@ -22,7 +22,7 @@ OFFSET = 0.05  # [m], [rad] a smaller constant difference counts as no differenc
 UNITS = ("m", "rad")
 TURNED = 0.005  # [rad] from one message to the next; in degrees, this is more than the tolerance
 ENOUGH = 10  # fewer messages while the robot turns show nothing
-AGES = range(4)  # [samples] of the pose that a message is based on
+SAMPLES_BACK = range(4)  # [samples] of the pose that a message is based on
 MAX_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less than half of it
 
 
@@ -52,7 +52,7 @@ def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence
     names = _fitting(index, wrong, thinned, scale)
     if UNCHANGED.intersection(names) - {"pose_of_start"}:  # a special case of it
         names = [name for name in names if name != "pose_of_start"]
-    if not names and index == ANGLE and any(_heading_is_in_degrees(scenarios, age) for age in AGES):
+    if not names and index == ANGLE and any(_heading_is_in_degrees(scenarios, age) for age in SAMPLES_BACK):
         names = [IN_DEGREES]
     return "; or: ".join(map(SENTENCES.__getitem__, names)) or _measured(index, thinned), set(names)
 
@@ -69,7 +69,7 @@ def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pai
             continue
         missed = [misses(index, pairs, predict, scale) for pairs in scenarios]
         rows = [longest(it, pairs, TOLERANCES[index]) for it, pairs in zip(missed, scenarios)]
-        if max(rows) < MAX_WRONG_TIME and all(_fits(it, index) for it in missed):
+        if max(rows) < MAX_UNFITTED_TIME and all(_fits(it, index) for it in missed):
             found.append((_mean(missed), cause))
     return list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < MAX_MEAN))
 

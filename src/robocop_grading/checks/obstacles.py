@@ -91,7 +91,7 @@ def _late_cause(record: Record, goal: SentGoal, end: float, clearance: float) ->
 
 
 def _approach(record: Record, goal: SentGoal) -> Optional[Failed]:
-    """Name the failure of a robot that drives towards an obstacle that is too near from the start."""
+    """The failure of a robot that drives towards an obstacle that is too near from the start."""
     before = [sample.ahead for sample in record.samples_between(goal.time - 0.15, goal.time)]
     after = record.samples_between(goal.time, record.active_until(goal))
     nearest = min((sample.ahead for sample in after), default=math.inf)

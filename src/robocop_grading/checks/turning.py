@@ -68,7 +68,7 @@ def turns_to_goal(record: Record, limits: Limits) -> Verdict:
 
 
 def _moves_first(record: Record, goal: SentGoal, situations: Sequence[Situation], limits: Limits) -> Optional[Failed]:
-    """Name the failure of a robot that drives off when the goal comes, and then turns as it should."""
+    """The failure of a robot that drives off when the goal comes, and then turns as it should."""
     first = next((command for command in record.commands if command.time >= goal.time - 1e-6), None)
     driving = [abs(it.command.v) > limits.driving for it in situations]
     at_first = driving.index(False) if False in driving else len(driving)
@@ -126,7 +126,7 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
 
 
 def _never_turned(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
-    """Name the failure of a robot that did not face the goal and got no command to turn."""
+    """The failure of a robot that did not face the goal and got no command to turn."""
     end = record.active_until(goal)
     start = record.samples_between(goal.time, goal.time)
     if not start or end - goal.time < 1.0:
@@ -164,7 +164,7 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
 
 
 def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> Optional[Failed]:
-    """Name the failure of a robot that drives backward, or does not move although it faces the goal."""
+    """The failure of a robot that drives backward, or does not move although it faces the goal."""
     backward = [it for it in driving if it.command.v < 0.0]
     standing = [it for it in aligned if abs(it.command.v) <= 1e-3]
     for wrong, situations, seen, cause in (
@@ -178,7 +178,7 @@ def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> 
 
 
 def _curves(driving: Sequence[Situation], limits: Limits) -> Optional[Failed]:
-    """Name the failure of a robot that drives along a curve; gentle corrections towards the goal are allowed."""
+    """The failure of a robot that drives along a curve; gentle corrections towards the goal are allowed."""
     curves = [
         it
         for it in driving

@@ -16,7 +16,7 @@ from geometry_msgs.msg import PoseStamped
 from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
 
 from .. import record as rec
-from ..handout import ACTION, CLICKS
+from ..handout import ACTION, CLICK_TOPIC
 from ..plan import TICK
 from ..sites import SITE
 from .goals import Goals
@@ -58,7 +58,7 @@ class BridgeRun(Run):
         super().__init__(job, stage)
         self.accepts = True
         self.topics.subscribe(f"{ACTION}/cancel", GoalID, self._on_cancel)
-        self.topics.advertise(CLICKS, PoseStamped)
+        self.topics.advertise(CLICK_TOPIC, PoseStamped)
         self.server: Optional[Goals] = None
         self.reports: Set[str] = set()  # topics
         self._ticks = 0
@@ -124,7 +124,7 @@ class BridgeRun(Run):
         message.header.frame_id, message.header.stamp = frame, self.stage.stamp
         message.pose.position.x, message.pose.position.y, message.pose.orientation.w = x, y, 1.0
         count = len(self.entries["goals"])
-        self.topics.publish(CLICKS, message)
+        self.topics.publish(CLICK_TOPIC, message)
         self.stage.run_node()  # what the bridge does at once takes no simulated time
         for _ in range(round(REACTION_TIME / TICK)):
             if len(self.entries["goals"]) > count:
@@ -156,11 +156,11 @@ class BridgeRun(Run):
         self.begin("no_server")
         self.launch()
         self.wait_for(
-            lambda: self.topics.node_subscribes_to(CLICKS) or self.topics.node_publishes(f"{ACTION}/cancel"),
+            lambda: self.topics.node_subscribes_to(CLICK_TOPIC) or self.topics.node_publishes(f"{ACTION}/cancel"),
             START_TIMEOUT,
         )
         self.settle(1.0)
-        if self.topics.node_subscribes_to(CLICKS):
+        if self.topics.node_subscribes_to(CLICK_TOPIC):
             self._send_click("odom", 0.5, 0.1)
         self.settle(3.0)
         self.marks["own_server"] = float(f"{ACTION}/result" in self.topics.published)
@@ -178,7 +178,7 @@ class BridgeRun(Run):
         self._finish_goals()
         self.settle(0.5)
         self.marks["clicked"] = self.stage.now
-        self.marks["listeners"] = float(self.topics.node_subscribes_to(CLICKS))
+        self.marks["listeners"] = float(self.topics.node_subscribes_to(CLICK_TOPIC))
         self.marks["clients"] = float(self.topics.node_publishes(f"{ACTION}/goal"))
         limits = self.plan.limits
         first = (BEFORE, limits.status_span + limits.status_period / 2.0, rec.SUCCEEDED, 6.0)
@@ -192,7 +192,8 @@ class BridgeRun(Run):
 
     def _has_client(self) -> bool:
         """Return whether the node hears of clicks, sends goals, and hears of their status and result."""
-        heard = all(self.topics.node_subscribes_to(name) for name in (CLICKS, f"{ACTION}/status", f"{ACTION}/result"))
+        topics = CLICK_TOPIC, f"{ACTION}/status", f"{ACTION}/result"
+        heard = all(map(self.topics.node_subscribes_to, topics))
         return heard and self.topics.node_publishes(f"{ACTION}/goal")
 
     def _watch_reports(self, seconds: float) -> None:
@@ -229,7 +230,7 @@ class BridgeRun(Run):
         for twist, seconds in ((Twist2D(0.2, 0.0), 3.0), (Twist2D(0.0, 0.5), 2.0), (Twist2D(), 1.0)):
             self.stage.command(twist)
             self.settle(seconds)
-        self.stage.pass_transform()
+        self.stage.advance_between_transforms()
         for frame in FRAMES:
             self._send_click(frame, 1.0, 0.2)
             self.settle(0.5)

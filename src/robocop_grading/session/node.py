@@ -77,7 +77,7 @@ class Node:
         self._is_over = False
         self._given_up = ""  # why the grader has ended it, if it has
         self._guard = Guard(self._process.pid, processor_time=job.cpu_time, used=spent.processor_time)
-        self._still, self._is_last = spent.still, spent.has_stopped_answering
+        self._still, self._has_stopped_answering = spent.still, spent.has_stopped_answering
         assert self._process.stdout is not None
         self._output = Output(self._process.stdout, on_line)
 
@@ -96,7 +96,7 @@ class Node:
 
     def spent(self) -> Spent:
         """What this node and the part's earlier nodes have used."""
-        return Spent(self._guard.used, self._still, self._is_last or bool(self._given_up))
+        return Spent(self._guard.used, self._still, self._has_stopped_answering or bool(self._given_up))
 
     def end(self) -> None:
         """SIGKILL the node and its children. With SIGTERM, shutdown messages would be recorded as errors."""
@@ -139,7 +139,7 @@ class Node:
             silent = min(looks * POLL, self._guard.still - still)
             if self._guard.idle - idle > MAX_IDLE or self._still + silent > MAX_STILL:
                 did = "stopped answering" if self._channel.is_open else "closed its connection to"
-                if self._is_last:
+                if self._has_stopped_answering:
                     raise GraderLostError(f"the node {did} the grader again")
                 self._given_up = f"it {did} the grader, which has ended it"
                 self.end()

@@ -122,8 +122,8 @@ class Stage:
                 self.run_node()
         return self.sample()
 
-    def pass_transform(self) -> None:
-        """Advance, by the clock as well, to halfway between two transforms of the robot."""
+    def advance_between_transforms(self) -> None:
+        """Let half an odometry period pass, so that the robot's newest transform is older than now."""
         self.sim.advance({}, self.sim.rate // PARAMS.sensors.odometry.odom_rate // 2)
         self.clock_ns = self.sim.stamp_ns
 
