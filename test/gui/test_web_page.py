@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from actionlib_msgs.msg import GoalStatus
-from browser import Tab, chromium
+from browser import Tab
 from desktop import Recorder
 from playwright.sync_api import Error as PlaywrightError
 from waiting import wait_for
@@ -29,12 +29,6 @@ def web(tmp_path_factory):
         yield web
 
 
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as browser:
-        yield browser
-
-
 @pytest.fixture
 def tab(web, browser):
     tab = Tab(browser, web.url)
@@ -46,11 +40,15 @@ def tab(web, browser):
 def test_a_click_on_the_floor_drives_the_robot_there_and_the_page_reports_no_error(web, tab):
     results = Recorder(web.ros, "/aro_robocop_goto_as_node", "/robocop_goto_as/result")
     wait_for(results.connected, "recorder of results")
+    heights = [tab.button(label).bounding_box()["y"] for label in ("Cancel goal", "Reset")]
     tab.click_floor(0.0, 0.0)
     wait_for(results.messages, "a result")
     tab.wait_for_text(r"✓ REACHED \(-?0\.0\d, -?0\.0\d\), 0\.\d\d m off, [\d.]+ s")
     assert math.hypot(*web.position()) < REACHED
     wait_for(tab.button("Cancel goal").is_disabled, "there is nothing to cancel")
+    assert [tab.button(label).bounding_box()["y"] for label in ("Cancel goal", "Reset")] == heights
+    assert tab.page.get_by_text("The lab, step by step").get_attribute("href") == "/lab.md"
+    assert web.status("/lab.md") == 200
     assert tab.errors == []
     assert tab.foreign == []
 
@@ -227,11 +225,6 @@ def test_the_slider_sets_the_real_time_factor_and_the_page_shows_the_factor_reac
         for _ in range(5):
             slider.press("ArrowRight")
     wait_for(lambda: web.sim()["factor_asked"] == 1.0, "the simulator is asked for real time")
-
-
-def test_the_page_links_to_the_lab(web, tab):
-    assert tab.page.get_by_text("The lab, step by step").get_attribute("href") == "/lab.md"
-    assert web.status("/lab.md") == 200
 
 
 BRIGHTNESS = """() => {  // of the scene's picture, from 0 to 255, and how much of it the browser shows

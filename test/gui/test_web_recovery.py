@@ -6,7 +6,7 @@ import signal
 import xmlrpc.client
 
 import pytest
-from browser import Tab, chromium
+from browser import Tab
 from desktop import Master
 from systems import CALLER
 from waiting import DEADLINE, wait_for
@@ -37,12 +37,6 @@ class Parts(Web):
         """Kill a node."""
         with xmlrpc.client.ServerProxy(self.ros.master.lookupNode(name)) as node:
             os.kill(node.getPid(CALLER)[2], signal.SIGKILL)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as browser:
-        yield browser
 
 
 @pytest.fixture(scope="module")

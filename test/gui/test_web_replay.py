@@ -5,7 +5,7 @@ import rosbag
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from aro_robocop_goto_as.msg import GoToPositionActionResult
-from browser import Tab, chromium
+from browser import Tab
 from desktop import Ros
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
@@ -49,11 +49,11 @@ class Replay(Ros):
         return ["roslaunch", "-p", self.port, "aro_robocop_goto_as", "replay.launch", "rviz:=false", *self.arguments]
 
 
-def test_a_recording_is_played_from_a_moment_paused_and_ends_with_its_goal(tmp_path):
+def test_a_recording_is_played_from_a_moment_paused_and_ends_with_its_goal(tmp_path, browser):
     write_bag(tmp_path / "server-drive.bag")
     port = free_port()
     arguments = [f"bag:={tmp_path / 'server-drive.bag'}", f"web_port:={port}", "rate:=0.15", f"start:={BEGIN}"]
-    with Replay(tmp_path, NoDesktop(), *arguments) as ros, chromium() as browser:
+    with Replay(tmp_path, NoDesktop(), *arguments) as ros:
         wait_for(lambda: ros.subscriber("/robocop_goto_as/result", "/replay"), "the page's node is registered")
         tab = Tab(browser, f"http://localhost:{port}")
         tab.wait_for_text("recorded time")

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from browser import Tab, chromium
+from browser import Tab
 from waiting import wait_for
 from web import REACHED, Web
 
@@ -23,12 +23,12 @@ def web(tmp_path_factory):
 
 
 @pytest.fixture
-def tab(web):
-    with chromium() as browser:
-        tab = Tab(browser, web.url)
-        tab.wait_for_text(READY)
-        tab.choose(FIRST, SECOND)
-        yield tab
+def tab(web, browser):
+    tab = Tab(browser, web.url)
+    tab.wait_for_text(READY)
+    tab.choose(FIRST, SECOND)
+    yield tab
+    tab.close()
 
 
 def test_the_robot_that_is_chosen_is_driven_and_no_other(web, tab):

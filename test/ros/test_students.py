@@ -30,6 +30,7 @@ CHANGES = {
 }
 DEADLINE = 300.0  # [s, wall] for a build and a start on a busy machine
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.xdist_group("hosting"),  # the first test builds the workspace that all of them extend
     pytest.mark.timeout(900),  # several times DEADLINE
 ]
@@ -132,7 +133,6 @@ def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gaze
     }
 
 
-@pytest.mark.slow
 def test_exit_status_is_1_when_the_simulator_refuses_its_arguments(hosted):
     system = hosted("scan_profile:=no_such")
     assert system.process.wait(DEADLINE) == 1, system.output
@@ -158,7 +158,6 @@ WORKSPACE = {
 }
 
 
-@pytest.mark.slow
 def test_node_with_its_neighbours_messages_ends_and_is_named_below_the_overview(tmp_path):
     for name, text in WORKSPACE.items():
         (tmp_path / "ws" / name).parent.mkdir(parents=True, exist_ok=True)
@@ -177,7 +176,6 @@ def test_node_with_its_neighbours_messages_ends_and_is_named_below_the_overview(
         system.end()
 
 
-@pytest.mark.slow
 def test_commands_of_a_turtlebot_2_drive_its_model_and_others_that_no_robot_hears_are_known(tmp_path):
     with System(tmp_path) as system:
         system.start_master()

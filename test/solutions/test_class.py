@@ -153,6 +153,7 @@ def test_when_a_worker_is_killed_every_hand_in_is_still_graded_exactly_once(grou
     assert len(stamps(group)) == 8
 
 
+@pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_interrupted_class_resumes_without_repeating_a_hand_in_and_names_what_is_not_gradable(
     group, start, tmp_path, monkeypatch

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Tuple
 
-from right_solutions import ABORT, BRIDGE, DRIVE, OBSTACLE, PUBLISH, RATE, SERVER, SLEEP, TURN, Changes, changed
+from right_solutions import ABORT, BRIDGE, OBSTACLE, PUBLISH, RATE, SERVER, SLEEP, TURN, Changes, changed
 
 
 @dataclass(frozen=True)
@@ -180,28 +180,6 @@ WRONG: Tuple[Wrong, ...] = (
     ),
     _server("no_init_node", "action_server", "init_node", ("    rospy.init_node('aro_robocop_goto_as_node')\n", "")),
     _server("right_side_forgotten", "turns_to_goal", "never turned", (CONDITION, "if angle_error > 0.1:")),
-    _server(
-        "result_comes_late",
-        "reaches_goal",
-        "stands at the goal, but the result comes later",
-        (END, "        self.stop()\n        rospy.sleep(3.0 * success)\n        result ="),
-        alone=True,
-    ),
-    _server(
-        "preempt_request_is_kept",
-        "next_goal",
-        "is all state that a goal changes reset",
-        (REQUESTED, "            self.count += self.server.is_preempt_requested()\n            if self.count:"),
-        alone=True,
-    ),
-    _server(
-        "never_reaches",
-        "reaches_goal",
-        "made no progress",
-        (REACHED, "if position_error < 0.0:"),
-        (DRIVE, "self.drive(0.2 if position_error > 0.1 else 0.0, 0.0)"),
-        (CONDITION, "if abs(angle_error) > 0.1 and position_error > 0.1:"),
-    ),
     _server("success_flag_forgotten", "success_result", "contradicts", ("result.success = success", "pass")),
     _server(
         "moves_first",
@@ -327,12 +305,6 @@ WRONG: Tuple[Wrong, ...] = (
         alone=True,
     ),
     _server(
-        "exception_in_scan",
-        "no_exception",
-        "IndexError",
-        ("ranges = np.array(msg.ranges)", "ranges = np.array(msg.ranges)\n        ranges[360]"),
-    ),
-    _server(
         "exits_with_result",
         "stays_alive",
         "died",
@@ -375,14 +347,6 @@ WRONG: Tuple[Wrong, ...] = (
         "cancels_older",
         "has the position of the older click",
         (POSITION, "self.last, goal.position = pose.pose.position, getattr(self, 'last', pose.pose.position)"),
-        alone=True,
-    ),
-    _bridge(
-        "bridge_reports_the_first_state",
-        "reports_status",
-        "reports PENDING while the goal is ACTIVE",
-        ("        self.sent = True\n", f"        self.sent = True\n        self.state = {STATE}\n"),
-        (f"'server: %s', {STATE}", "'server: %s', getattr(self, 'state', '')"),
         alone=True,
     ),
     _bridge(
@@ -453,14 +417,6 @@ WRONG: Tuple[Wrong, ...] = (
         "without turning again",
         (BEGIN, BEGIN.replace("success = False", "success, turned = False, False")),
         (CONDITION, "turned = abs(angle_error) <= (0.5 if turned else 0.1)\n            if not turned:"),
-        alone=True,
-    ),
-    _server(
-        "feedback_after_the_sleep",
-        "feedback_position",
-        "in the feedback is old",
-        (PUBLISH, ""),
-        (SLEEP, SLEEP + PUBLISH),
         alone=True,
     ),
     _server(
@@ -558,16 +514,6 @@ WRONG: Tuple[Wrong, ...] = (
         "reaches_goal",
         "but the last position_error in the feedback is",
         (POSE, "self.pose = (0.97 * msg.pose.pose.position.x, 0.97 * msg.pose.pose.position.y, yaw)"),
-    ),
-    _server(
-        "reverses_before_the_abort",
-        "stops_at_obstacle",
-        "only when it had moved away again",
-        (
-            ABORT,
-            ABORT.replace("break", "self.drive(-0.1, 0.0)\n                rospy.sleep(2.0)\n                break"),
-        ),
-        alone=True,
     ),
     _server(
         "aborts_and_drives_on",
@@ -702,21 +648,6 @@ WRONG: Tuple[Wrong, ...] = (
         alone=True,
     ),
     _server(
-        "timer_of_each_goal_goes_on",
-        "feedback_rate",
-        "right at the first goal",
-        (PUBLISH, ""),
-        (RATE, f"{RATE}        self.goal = goal.position\n{FEEDBACK_TIMER}"),
-        (
-            DRIVE_BEGIN,
-            "    def tell(self, _event):\n        if self.server.is_active():\n            x, y, yaw = self.pose\n"
-            "            dx, dy = self.goal.x - x, self.goal.y - y\n            errors = math.hypot(dx, dy), wrap(\n"
-            "                math.atan2(dy, dx) - yaw)\n"
-            f"            self.server.publish_feedback(GoToPositionFeedback(*errors, 'moving'))\n\n{DRIVE_BEGIN}",
-        ),
-        alone=True,
-    ),
-    _server(
         "feedback_timer_raises",
         "no_exception",
         "TypeError",
@@ -735,13 +666,6 @@ WRONG: Tuple[Wrong, ...] = (
         "turns at the goal",
         (REACHED, "if position_error < 0.1 and abs(angle_error) < 0.1:"),
         alone=True,
-    ),
-    _server(
-        "drives_blindly",
-        "reaches_goal",
-        "before position_error is below",
-        (RATE, f"{RATE}        start = self.pose\n"),
-        (REACHED, "if math.hypot(x - start[0], y - start[1]) > 0.6:"),
     ),
 )
 
