@@ -157,6 +157,7 @@ WRONG: Tuple[Wrong, ...] = (
     ),
     _server("ground_truth", "no_exception", "NoneType", ("'/odom'", "'/ground_truth_odom'")),
     _server("fast_loop", "feedback_rate", "10 Hz", ("rospy.Rate(10)", "rospy.Rate(50)"), alone=True),
+    _server("slow_loop", "feedback_rate", "loop's rate is not 10 Hz", ("rospy.Rate(10)", "rospy.Rate(1)"), alone=True),
     _server(
         "unpaced_loop",
         "feedback_rate",

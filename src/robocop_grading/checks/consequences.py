@@ -13,6 +13,7 @@ MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and drivin
 ENOUGH = 4  # fewer commands show nothing
 MAX_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
 NEAR_GOAL = 1.2 * GOAL_RADIUS  # [m]
+SLOW = 4.0  # [Hz] of commands, at which a server reacts late
 ITERATION = 0.15  # [s] of a server's loop, with a tick of the recording
 
 
@@ -85,6 +86,14 @@ def reported_near(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether an end far from the goal fits the position_error that the server reported itself."""
     reports = record.feedback_of(failure.goal) if failure.goal else []
     return bool(reports) and reports[-1].position_error <= NEAR_GOAL
+
+
+def slow_loop(record: Record, _failure: Failed, earlier: Failed) -> bool:
+    """Return whether feedback comes too seldom, and commands do as well."""
+    ends = [record.active_until(goal) for goal in record.goals]
+    active = sum(end - goal.time for goal, end in zip(record.goals, ends))
+    sent = sum(goal.time <= it.time < end for goal, end in zip(record.goals, ends) for it in record.commands)
+    return earlier.kind is Kind.TOO_LITTLE and 0 < sent < SLOW * active
 
 
 def never_reported_near(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -202,6 +211,8 @@ FOLLOWS = (
     Row("turns_to_goal", None, "stays_alive", died_before),
     Row("odd_scans", None, "stops_at_obstacle", at_wall),
     Row("stops_at_obstacle odd_scans", Kind.MOVING, "stands_at_end"),
+    Row("goal_behind", Kind.LONG_TURN, "feedback_rate", slow_loop),
+    Row("stops_at_obstacle odd_scans", Kind.TOO_NEAR, "feedback_rate", slow_loop),
     Row("goal_behind", Kind.LONG_TURN, "drives_straight"),
     Row("goal_behind", Kind.LONG_TURN, "turns_to_goal"),
     Row("newer_goal", None, "cancel", same_kind),

@@ -35,7 +35,11 @@ def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Fa
         cause = f"The node subscribes to {silent}, which nobody publishes; the laser's topic is /scan"
         return replace(failure, cause=cause)
     of_old_scan = late(records, SCAN_TOPIC, "The distance ahead is that of an old scan")
-    return replace(failure, cause=of_old_scan) if of_old_scan and (unnoticed or not failure.kind) else failure
+    return (
+        replace(failure, cause=of_old_scan)
+        if of_old_scan and (unnoticed or failure.kind in (None, Kind.TOO_NEAR))
+        else failure
+    )
 
 
 @check("distances", explain=_explained)
@@ -70,7 +74,7 @@ def _wrong_abort(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fai
         return Failed(wanted, seen, end, cause, goal=goal)
     if clearances and clearances[-1] < limits.abort_nearest:
         cause = narrow_obstacle(record) or _late_cause(record, goal, end, clearances[-1])
-        return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause)
+        return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause, Kind.TOO_NEAR, goal)
     if contact < math.inf:
         cause = keeps_moving(record, record.results_of(goal)[0], contact)
         return Failed("a stop before the obstacle", "contact", contact, cause, Kind.MOVING, goal)

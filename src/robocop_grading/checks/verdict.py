@@ -26,6 +26,7 @@ class Kind(enum.Enum):
     SUCCESS_LATE = "success too late"
     END_LATE = "an end too late after a request to end"
     TOO_EARLY = "an abort too far away from the obstacle"
+    TOO_NEAR = "an abort too near to the obstacle"
     EXCEPTION = "an exception ended the goal"
     NOT_RESET = "an earlier goal has left something behind"
     NO_ANSWER = "the server no longer accepts goals"
