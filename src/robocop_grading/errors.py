@@ -4,7 +4,7 @@ from aro_robocop_goto_as.errors import RobocopError
 
 
 class GradingError(RobocopError):
-    """A submission can't be read, built or graded, and its author has to correct it, unless a subclass says who."""
+    """A submission can't be read, built or graded; subclasses and messages say who can correct that."""
 
 
 class PlanError(GradingError):
@@ -16,7 +16,7 @@ class GradingSetupError(GradingError):
 
 
 class UngradableError(GradingError):
-    """The grader can't start a run, has no time for it, or was ended from outside twice; the run can be repeated."""
+    """The grader can't start a run, has no time for it, or it was ended from outside twice; the run can be repeated."""
 
 
 class GraderLostError(GradingError):

@@ -116,7 +116,7 @@ def test_a_tab_that_is_chosen_on_a_phone_fills_the_panel(web, browser, size):
     tab = Tab(browser, web.url, size, touch=True)
     tab.wait_for_text(READY)
     tab.page.get_by_role("tab", name="Plots").dispatch_event("click")
-    title = tab.page.get_by_text("errors", exact=True).last  # below that of the feedback
+    title = tab.page.get_by_role("tabpanel").get_by_text("errors", exact=True)
     wait_for(lambda: title.bounding_box()["y"] + PLOT < tab.button("Forward").bounding_box()["y"], "the plot is seen")
     tab.close()
 

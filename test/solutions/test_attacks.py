@@ -138,6 +138,7 @@ def test_build_and_launch_file_cannot_reach_anything_outside_the_sandbox(package
     "name, make",
     [
         ("scripts/robocop_goto_as.py", "ln -s SECRET"),
+        ("launch/robocop_goto_as.launch", "ln -s SECRET"),
         ("launch/robocop_goto_as.launch", "mkfifo"),
     ],
 )

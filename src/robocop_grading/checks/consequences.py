@@ -46,7 +46,7 @@ def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
 def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether an exception was logged before a goal ended otherwise than it should."""
     end = failure.time if failure.kind is Kind.MOVES_FIRST else end_of(record, failure)
-    return failure.kind is not None and logged(record, UNCAUGHT, end)
+    return failure.kind not in (None, Kind.TOO_NEAR) and logged(record, UNCAUGHT, end)
 
 
 def no_state_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -89,11 +89,13 @@ def reported_near(record: Record, failure: Failed, _earlier: Failed) -> bool:
 
 
 def slow_loop(record: Record, _failure: Failed, earlier: Failed) -> bool:
-    """Return whether feedback comes too seldom, and commands do as well."""
-    ends = [record.active_until(goal) for goal in record.goals]
-    active = sum(end - goal.time for goal, end in zip(record.goals, ends))
-    sent = sum(goal.time <= it.time < end for goal, end in zip(record.goals, ends) for it in record.commands)
-    return earlier.kind is Kind.TOO_LITTLE and 0 < sent < SLOW * active
+    """Return whether feedback comes too seldom, and commands come as seldom."""
+    latest = record.samples[-1].time if record.samples else 0.0
+    spans = [(goal.time, min(record.active_until(goal), latest)) for goal in record.goals]
+    commands = sum(begin <= it.time < end for begin, end in spans for it in record.commands)
+    reports = sum(begin <= it.time < end for begin, end in spans for it in record.feedback)
+    few = SLOW * sum(end - begin for begin, end in spans)
+    return earlier.kind is Kind.TOO_LITTLE and 0 < commands < min(few, 1.5 * reports + ENOUGH)
 
 
 def never_reported_near(record: Record, failure: Failed, _earlier: Failed) -> bool:

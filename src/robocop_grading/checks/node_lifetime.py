@@ -7,7 +7,7 @@ from aro_robocop_goto_as.names import ACTION_TYPE
 
 from ..handout import ACTION, Limits
 from ..record import Death, Record
-from .output import DELAY, TRACEBACK_LOGGED, UNCAUGHT, last_error
+from .output import DELAY, TRACEBACK, TRACEBACK_LOGGED, UNCAUGHT, first_error, last_error
 from .topic_use import other_action
 from .verdict import PASSED, Failed, NotReached, Verdict, check
 
@@ -57,10 +57,11 @@ def _died(cause: str, death: Death, record: Record) -> Failed:
 def no_exception(record: Record, limits: Limits) -> Verdict:
     """No callback or thread raises an uncaught exception."""
     fatal = [it.time for it in record.deaths if it.status == RAISED and not it.reason]
-    for line in record.lines:
+    for number, line in enumerate(record.lines):
         is_fatal = any(abs(time - line.time) <= DELAY for time in fatal) and TRACEBACK_LOGGED.search(line.text)
         if is_fatal or UNCAUGHT.search(line.text):
-            return Failed("no exception", "one", line.time, last_error(record, line.time))
+            error = first_error([it.text for it in record.lines[number : number + TRACEBACK]])
+            return Failed("no exception", error, line.time, last_error(record, line.time))
     return PASSED
 
 

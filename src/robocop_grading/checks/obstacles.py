@@ -74,7 +74,7 @@ def _wrong_abort(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fai
         return Failed(wanted, seen, end, cause, goal=goal)
     if clearances and clearances[-1] < limits.abort_nearest:
         cause = narrow_obstacle(record) or _late_cause(record, goal, end, clearances[-1])
-        return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause, Kind.TOO_NEAR, goal)
+        return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause, Kind.TOO_NEAR)
     if contact < math.inf:
         cause = keeps_moving(record, record.results_of(goal)[0], contact)
         return Failed("a stop before the obstacle", "contact", contact, cause, Kind.MOVING, goal)

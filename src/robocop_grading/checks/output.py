@@ -95,6 +95,14 @@ def last_error(record: Record, until: float = math.inf) -> str:
     return others[-1][:200] if PROBLEM.match(others[-1]) else f"it had printed: {others[-1][:200]}"
 
 
+def first_error(lines: Sequence[str]) -> str:
+    """Type and message of the exception with which these lines begin; the first line if they have no traceback."""
+    texts = [text for line in lines for text in line.splitlines() if text.strip()]
+    ends = [texts[number].strip() for number in _ends(texts)]
+    begins_with_one = any("Traceback" in text for text in texts[:2])
+    return FOLDER.sub(r"\1", ends[0] if ends and begins_with_one else texts[0])[:200]
+
+
 def _ends(lines: Sequence[str]) -> Iterator[int]:
     """Where tracebacks end: the first line after each one's beginning that is not indented."""
     within = False

@@ -159,7 +159,7 @@ def _mounts(option: str, paths: Iterable[Path]) -> List[str]:
 
 
 def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
-    """The sandbox, or None if `unsafe`; GradingError if bubblewrap can't run, or not in time."""
+    """The sandbox, or None if `unsafe`; GradingError if bubblewrap can't run, UngradableError if not in time."""
     if unsafe:
         return None
     advice = "--unsafe runs the submission without it, with all your rights"

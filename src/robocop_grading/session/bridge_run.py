@@ -135,7 +135,7 @@ class BridgeRun(Run):
     def _subscribe_to_reports(self) -> None:
         """Record published states like logged lines; their topics may appear at any time."""
         reports = [name for name, topic in self.topics.published.items() if topic.type in STATUS_TYPES]
-        for name in sorted(set(reports) - self.reports):
+        for name in sorted(it for it in reports if not self.topics.listens_to(it)):
             kind = roslib.message.get_message_class(self.topics.published[name].type)
             self.topics.subscribe(name, kind, self._on_line, partial(_text, f"published on {name}"))
             self.reports.add(name)

@@ -117,6 +117,10 @@ class Topics:
         self._heard[name] = _Heard(kind, header(kind, topic=name), handler, of)
         self._new.append(self._heard[name].header)
 
+    def listens_to(self, name: str) -> bool:
+        """Return whether the grader wants what is published on a topic."""
+        return name in self._heard
+
     def ignore(self, name: str) -> None:
         """Stop listening to a topic."""
         del self._heard[name]

@@ -197,7 +197,7 @@ NO_UTF8 = "SyntaxError: Non-UTF-8 code starting with '\\xf8' in file {}robocop_g
 
 
 @pytest.mark.parametrize(
-    "lines, error, place",
+    "lines, seen, place",
     [
         (("Exception in thread Thread-6:", *KEY_ERROR), "KeyError: 'x'", ""),
         ((STOP, "[WARN] on"), "__main__.Stop: 1", " (robocop_goto_as.py, line 5: raise Stop(1))"),
@@ -205,10 +205,10 @@ NO_UTF8 = "SyntaxError: Non-UTF-8 code starting with '\\xf8' in file {}robocop_g
     ],
 )
 def test_exception_is_named_with_its_file_and_line_and_without_its_folder(
-    lines: Tuple[str, ...], error: str, place: str
+    lines: Tuple[str, ...], seen: str, place: str
 ) -> None:
     verdict = CHECKS["no_exception"](logged(*lines), LIMITS)
-    assert isinstance(verdict, Failed) and verdict.cause == f"{error}{place}"
+    assert isinstance(verdict, Failed) and (verdict.seen, verdict.cause) == (seen, f"{seen}{place}")
 
 
 @pytest.mark.parametrize(
