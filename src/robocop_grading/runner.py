@@ -99,8 +99,8 @@ class Runner:
     def supervise(self, command: List[str], environment: Dict[str, str], out: Path, part: str) -> Recorded:
         """Start a session, follow what it reports on its standard output, and end it after the budget.
 
-        UngradableError if the submission is not to blame. A session that fails in another way after it
-        has begun a scenario is judged.
+        UngradableError if the submission is not to blame. A session that fails in another way after it has begun a
+        scenario is judged.
         """
         log = out / f"{part}-session.log"
         process = child.start(command, log, environment, stdout=PIPE)

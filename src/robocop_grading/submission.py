@@ -161,7 +161,7 @@ def _script(part: str, choice: Choice, top: Path) -> Script:
     )
 
 
-@functools.lru_cache(maxsize=None)  # also if the sources change while this process runs
+@functools.lru_cache(maxsize=None)  # the same folder all the time, even if the sources change meanwhile
 def _lab_folder(share: Path, state: Path) -> Path:
     return workspace.folder_for(state / "grade" / "lab", SKELETON, share / "compat")
 

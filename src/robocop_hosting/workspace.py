@@ -176,7 +176,7 @@ def exclusive(folder: Path) -> Iterator[None]:
         yield
 
 
-@functools.lru_cache(maxsize=None)  # also if the sources change while this process runs
+@functools.lru_cache(maxsize=None)  # the same folder all the time, even if the sources change meanwhile
 def compat_folder(share: Path, state: Path) -> Path:
     """The workspace below `state`/compat of the packages in `share`/compat, a folder of this package."""
     return folder_for(state / "compat", share / "compat")

@@ -306,6 +306,12 @@ WRONG: Tuple[Wrong, ...] = (
         alone=True,
     ),
     _server(
+        "exception_in_scan",
+        "no_exception",
+        "IndexError",
+        ("ranges = np.array(msg.ranges)", "ranges = np.array(msg.ranges)\n        ranges[360]"),
+    ),
+    _server(
         "exits_with_result",
         "stays_alive",
         "died",

@@ -20,7 +20,7 @@ from ..handout import ACTION, CLICK_TOPIC
 from ..plan import TICK
 from ..sites import SITE
 from .goals import Goals
-from .job import Job, send_to_grader
+from .job import Job
 from .run import Run
 from .stage import Stage
 
@@ -67,7 +67,7 @@ class BridgeRun(Run):
         """Run the scenarios up to the last one that a check examines: each begins where the previous one ended."""
         for name in self.plan.scenarios_of(self.job.part):
             scenario = getattr(self, f"_{name}")
-            send_to_grader(f"begin {name}")
+            self.announce(name)
             scenario()
 
     # -- the server that it talks to --

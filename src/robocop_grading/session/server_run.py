@@ -15,7 +15,7 @@ from ..handout import ACTION
 from ..plan import AGAIN, START, TICK, Push, Scenario, Step
 from ..record import Record
 from ..sites import SITE
-from .job import Job, send_to_grader
+from .job import Job
 from .progress import Progress
 from .run import Run
 from .scenario_bag import MARKERS
@@ -45,11 +45,11 @@ class ServerRun(Run):
 
     def scenarios(self) -> None:
         """Start the node, then all scenarios, if its action server comes up."""
-        send_to_grader(f"begin {START}")
+        self.announce(START)
         start = self._start()
         for scenario in self.plan.scenarios:
             if start.up and self.plan.examines(self.job.part, scenario.name):
-                send_to_grader(f"begin {scenario.name}")
+                self.announce(scenario.name)
                 self._scenario(scenario)
 
     def _start(self) -> Record:
