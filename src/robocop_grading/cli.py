@@ -33,6 +33,7 @@ from .texts import printable, printable_lines
 # Exit statuses; 2 is argparse's, 130 is the shells'.
 NOT_EVERYTHING, WRONG_USE, NO_GRADE, NOT_GRADED, INTERRUPTED = 1, 2, 3, 4, 130
 SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
+ALL_PLOTS = "draw plots and keep bags of all scenarios (default: of those in which a check failed)"
 WRONG_USES = (GradingSetupError, InstallationError, ParameterError, PlanError)
 MAX_SHOWN = 1_000  # characters of an error
 
@@ -117,6 +118,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
     parser.add_argument("--seed", type=int, default=MIDDLE, metavar="N", help=SEED_HELP)
     parser.add_argument("--unsafe", action="store_true", help="run the submission without bubblewrap's sandbox")
+    parser.add_argument("--all-plots", action="store_true", help=ALL_PLOTS)
     parser.add_argument("--only", nargs="+", default=(), metavar="CHECK", help="run only what these checks need")
     return parser.parse_args()
 
@@ -153,7 +155,7 @@ def main() -> None:
             folder = given or make_report_folder(report_folder(state / "reports", args.path, plan.is_whole))
             on_progress = progress(plan, [script.part for script in submission.scripts])
             runner = Runner(plan, state, sandbox, on_progress)
-            grade = grade_submission(runner, submission, folder)
+            grade = grade_submission(runner, submission, folder, all_plots=args.all_plots)
     except UngradableError as error:
         print(f"robocop grade: no grade: {printable_lines(str(error))}", file=sys.stderr)
         sys.exit(NO_GRADE)

@@ -30,10 +30,12 @@ _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
 EXCUSE = " (is the machine short of memory?)"
 
 
-def grade(runner: Runner, submission: Submission, folder: Path, place: Optional[Path] = None) -> Grade:
-    """Write the report and the bags to `folder`.
+def grade(
+    runner: Runner, submission: Submission, folder: Path, place: Optional[Path] = None, all_plots: bool = False
+) -> Grade:
+    """Write the report to `folder`, with plots and bags of the scenarios in which a check failed, or of all.
 
-    `place`: where the folder will be moved, with the bags of failed scenarios only. A part that is killed is run again.
+    `place`: where the folder will be moved. A part that is killed is run again.
     UngradableError if the part is killed again and may not be to blame, or if the machine has no time for it.
     """
     plan = runner.plan
@@ -49,11 +51,10 @@ def grade(runner: Runner, submission: Submission, folder: Path, place: Optional[
         told = dict.fromkeys([*judged.notes, *notes, *(submission.notes if plan.is_whole else ())])
         judged = replace(judged, files=tuple(submission.files), notes=tuple(told))
         folder.mkdir(parents=True, exist_ok=True)
-        failed = {f"{check.part}-{check.scenario}" for check in judged.checks if check.failure is not None}
         for bag in sorted(Path(work).glob("*/*.bag")):
-            if place is None or bag.stem in failed:
+            if all_plots or judged.failed_in(*bag.stem.split("-", 1)):
                 shutil.copyfile(bag, folder / bag.name)
-        report.write(judged, plan, records, folder, place)
+        report.write(judged, plan, records, folder, place, all_plots)
     return judged
 
 

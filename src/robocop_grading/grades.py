@@ -157,6 +157,10 @@ class Grade:
         """Names of the failed checks."""
         return [check.name for check in self.checks if check.outcome is CheckOutcome.FAILED]
 
+    def failed_in(self, part: str, scenario: str) -> List[str]:
+        """Names of the checks that failed in a scenario of a part."""
+        return [it.name for it in self.checks if it.failure is not None and (it.part, it.scenario) == (part, scenario)]
+
 
 def scored(checks: Sequence[CheckResult]) -> Tuple[float, float]:
     """Points scored and available, without extra ones unless all of these checks are extra."""

@@ -22,7 +22,6 @@ from ..judge import Records
 from ..plan import BRIDGE_SCENARIOS, START, Plan
 from ..record import Record
 from ..texts import printable, printable_lines, shortened
-from .plots import svg
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
 MARKS = {"passed": "✅", "failed": "❌", "not reached": "➖", "not handed in": "➖"}  # of outcomes in the summary
@@ -41,8 +40,13 @@ def make_report_folder(folder: Path) -> Path:
     return folder
 
 
-def write(grade: Grade, plan: Plan, records: Records, folder: Path, place: Optional[Path] = None) -> None:
-    """Write all files to an existing folder that already has the bags; `place`: where the folder will be moved."""
+def write(
+    grade: Grade, plan: Plan, records: Records, folder: Path, place: Optional[Path] = None, all_plots: bool = False
+) -> None:
+    """Write all files to an existing folder that already has the bags; `place`: where the folder will be moved.
+
+    `all_plots`: also of scenarios in which no check failed.
+    """
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1, default=lambda kind: kind.value))
     (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
@@ -58,7 +62,7 @@ def write(grade: Grade, plan: Plan, records: Records, folder: Path, place: Optio
         grade=grade,
         seed=plan.seed,
         mistakes=[_mistake(it, records, replay) for it in grade.mistakes],
-        scenarios=list(_scenarios(grade, plan, records, replay)),
+        scenarios=list(_scenarios(grade, plan, records, replay, all_plots)),
     )
     (folder / "report.html").write_text(page, encoding="utf-8", errors="replace")
 
@@ -154,20 +158,23 @@ def _mistake(mistake: Mistake, records: Records, replay: Callable[..., str]) -> 
     return {**values, "svg": picture, "replay": command, "problem": problem}
 
 
-def _scenarios(grade: Grade, plan: Plan, records: Records, replay: Callable[..., str]) -> Iterator[Dict[str, Any]]:
+def _scenarios(
+    grade: Grade, plan: Plan, records: Records, replay: Callable[..., str], all_plots: bool
+) -> Iterator[Dict[str, Any]]:
     """The values of each scenario's section."""
     about = {scenario.name: scenario.about for scenario in plan.scenarios}
     order = [START, *about, *BRIDGE_SCENARIOS]
     for part, by_name in records.items():
         for record in sorted(by_name.values(), key=lambda record: order.index(record.name)):
-            checks = [it for it in grade.checks if (it.part, it.scenario) == (part, record.name)]
+            failed = grade.failed_in(part, record.name)
+            plots = SCENARIO_PLOTS[part] if failed or all_plots else ()
             yield {
                 "part": part,
                 "record": record,
                 "about": about.get(record.name, ""),
-                "failed": [check.name for check in checks if check.outcome is CheckOutcome.FAILED],
+                "failed": failed,
                 "replay": replay(part, record),
-                "plots": [svg for svg in (_plot(plot, record, []) for plot in SCENARIO_PLOTS[part]) if svg],
+                "plots": [svg for svg in (_plot(plot, record, []) for plot in plots) if svg],
                 "lines": record.lines[:MAX_LINES],
             }
 
@@ -179,7 +186,11 @@ def _has_something_to_see(record: Record) -> bool:
 
 def _plot(name: str, record: Record, moments: Sequence[float]) -> str:
     """A plot of a scenario with these moments marked [s]; nothing for a scenario in which nothing happens."""
-    return svg(name, record, moments) if _has_something_to_see(record) else ""
+    if not _has_something_to_see(record):
+        return ""
+    from .plots import svg  # importing matplotlib takes a third of a second
+
+    return svg(name, record, moments)
 
 
 # -- pages made from templates/ --

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from grading_records import PLAN
+from grading_records import PLAN, RIGHT, changed
 
 from robocop_grading.errors import UngradableError
 from robocop_grading.grader import grade
@@ -67,6 +67,24 @@ def test_the_kernel_tells_how_many_processes_it_has_killed(tmp_path, monkeypatch
 )
 def test_only_a_sigkill_that_the_grader_did_not_send_is_unexplained(death, outside):
     assert death.is_unexplained == outside
+
+
+@pytest.mark.parametrize("all_plots, bags", [(False, ["server-left.bag"]), (True, ["server-far.bag", "server-left.bag"])])
+def test_bags_are_kept_of_scenarios_in_which_a_check_failed_unless_all_are_asked_for(
+    all_plots, bags, tmp_path, monkeypatch
+):
+    fast = changed(commands=tuple(replace(it, v=1.0) for it in RIGHT.commands))
+
+    def run(_runner, _submission, _script, out):
+        out.mkdir(parents=True)
+        for name in ("left", "far"):
+            (out / f"server-{name}.bag").touch()
+        return Recorded({"left": fast, "far": replace(RIGHT, name="far")})
+
+    monkeypatch.setattr(Runner, "run", run)
+    submission = Submission("anna", (), {}, [Script("server", tmp_path, "node")])
+    grade(Runner(PLAN, tmp_path), submission, tmp_path / "report", all_plots=all_plots)
+    assert sorted(path.name for path in (tmp_path / "report").glob("*.bag")) == bags
 
 
 @pytest.mark.parametrize(

@@ -19,11 +19,11 @@ MOVING = replace(RIGHT, samples=tuple(replace(sample, v=0.2) for sample in RIGHT
 STUCK = changed(results=(), problem="the robot made no progress for 8 s, and the goal did not end")
 
 
-def written(folder, *records, place=None):
+def written(folder, *records, place=None, all_plots=False):
     """The report of a server that left these records."""
     by_name = {"server": {record.name: record for record in records}}
     grade = judge("<anna>", PLAN, by_name, {})
-    report.write(grade, PLAN, by_name, folder, place)
+    report.write(grade, PLAN, by_name, folder, place, all_plots)
     return grade, (folder / "report.html").read_text()
 
 
@@ -35,6 +35,11 @@ def test_report_begins_with_each_mistake_beside_its_picture_and_folds_what_passe
     folded = re.findall("<details><summary>(.*?)</summary>", html[html.index("</section>") :], re.DOTALL)
     assert [re.sub("<[^>]*>", "", it).split(",")[0].split(" ", 1)[1] for it in folded][-1] == "passed"
     assert html.count("<svg") == 6, "and the five plots of the scenario"
+
+
+def test_scenarios_in_which_every_check_passed_have_plots_only_if_all_are_asked_for(tmp_path):
+    assert "<svg" not in written(tmp_path, RIGHT)[1]
+    assert written(tmp_path, RIGHT, all_plots=True)[1].count("<svg") == 5
 
 
 def test_what_follows_from_a_mistake_is_one_line_below_it(tmp_path):
