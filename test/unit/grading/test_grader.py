@@ -69,7 +69,9 @@ def test_only_a_sigkill_that_the_grader_did_not_send_is_unexplained(death, outsi
     assert death.is_unexplained == outside
 
 
-@pytest.mark.parametrize("all_plots, bags", [(False, ["server-left.bag"]), (True, ["server-far.bag", "server-left.bag"])])
+@pytest.mark.parametrize(
+    "all_plots, bags", [(False, ["server-left.bag"]), (True, ["server-far.bag", "server-left.bag"])]
+)
 def test_bags_are_kept_of_scenarios_in_which_a_check_failed_unless_all_are_asked_for(
     all_plots, bags, tmp_path, monkeypatch
 ):
