@@ -31,16 +31,44 @@ POSE_READ = "            x, y, yaw = self.pose\n"
 PUBLISH = "            self.server.publish_feedback(feedback)\n"
 
 CHANGED: Dict[str, Changes] = {
-    # Interprets the handout so that an obstacle ahead aborts the goal also while the robot turns.
-    "aborts_while_turning": (
+    # At the robot's limits and twice as often as in the handout's example; only beams within 15 degrees count as ahead;
+    # prints exceptions that it has caught.
+    "fast_and_often": (
+        (TURN, TURN.replace("0.8", "1.6")),
+        (DRIVE, "self.drive(0.22, 0.0)"),
+        (RATE, "        rate = rospy.Rate(20)\n"),
+        ("ranges[:30], ranges[-30:]", "ranges[:16], ranges[-15:]"),
+        (IMPORT, f"{IMPORT}import traceback\n"),
+        (
+            POSE_READ,
+            "            try:\n                {}['no transform yet']\n"
+            f"            except KeyError:\n                traceback.print_exc()\n{POSE_READ}",
+        ),
+    ),
+    # Drives and turns slowly, paced by the wall clock: time.sleep instead of a Rate. Interprets the handout so that an
+    # obstacle ahead aborts the goal also while the robot turns.
+    "slow_by_the_wall_clock": (
+        (TURN, "self.drive(0.0, math.copysign(0.25, angle_error))"),
+        (DRIVE, "self.drive(0.06, 0.0)"),
+        (IMPORT, f"{IMPORT}import time\n"),
+        (RATE, ""),
+        (SLEEP, "            time.sleep(0.1)\n"),
         (
             "            if abs(angle_error) > 0.1:",
             "            if self.min_dist_ahead < 0.3:\n                break\n            if abs(angle_error) > 0.1:",
         ),
         (f"            {ABORT}\n", ""),
     ),
-    # Beams within 15 degrees count as ahead.
-    "cone_of_fifteen_degrees": (("ranges[:30], ranges[-30:]", "ranges[:16], ranges[-15:]"),),
+    # Corrects its heading while driving if the error is within 0.1 rad, slows down towards the goal, and publishes a
+    # command only if it differs from the last one.
+    "steers_continuously": (
+        (DRIVE, "self.drive(min(0.2, 0.05 + 0.4 * position_error), 1.5 * angle_error)"),
+        (
+            "    def drive(self, v, w):\n",
+            "    last = None\n\n    def drive(self, v, w):\n        if (v, w) == self.last:\n            return\n"
+            "        self.last = v, w\n",
+        ),
+    ),
     # The loop is a coroutine, paced by asyncio.sleep in the main thread's event loop.
     "asyncio_loop": (
         (IMPORT, f"import asyncio\n{IMPORT}"),
@@ -53,28 +81,6 @@ CHANGED: Dict[str, Changes] = {
         (SLEEP, "            await asyncio.sleep(0.1)\n"),
         ("    rospy.spin()\n", "    node.loop.run_forever()\n"),
     ),
-    # Commands are published only when they change.
-    "commands_on_change": (
-        (
-            "    def drive(self, v, w):\n",
-            "    last = None\n\n    def drive(self, v, w):\n        if (v, w) == self.last:\n            return\n"
-            "        self.last = v, w\n",
-        ),
-        (TURN, "self.drive(0.0, math.copysign(0.3, angle_error))"),
-    ),
-    # Corrects its heading while driving if the error is within 0.1 rad, and slows down towards the goal.
-    "continuous_steering": ((DRIVE, "self.drive(min(0.2, 0.05 + 0.4 * position_error), 1.5 * angle_error)"),),
-    # At the robot's limits.
-    "fast": ((TURN, TURN.replace("0.8", "1.6")), (DRIVE, "self.drive(0.22, 0.0)")),
-    # Prints exceptions that it has caught.
-    "prints_caught_exceptions": (
-        (IMPORT, f"{IMPORT}import traceback\n"),
-        (
-            POSE_READ,
-            "            try:\n                {}['no transform yet']\n"
-            f"            except KeyError:\n                traceback.print_exc()\n{POSE_READ}",
-        ),
-    ),
     # Commands at 100 Hz, each of them logged; feedback at 10 Hz.
     "hundred_hertz": (
         (
@@ -85,8 +91,6 @@ CHANGED: Dict[str, Changes] = {
         (RATE, "        rate = rospy.Rate(100)\n"),
         (PUBLISH, f"            self.count += 1\n            if self.count % 10 == 1:\n    {PUBLISH}"),
     ),
-    # Drives and turns slowly.
-    "slow": ((TURN, "self.drive(0.0, math.copysign(0.25, angle_error))"), (DRIVE, "self.drive(0.06, 0.0)")),
     # The loop is a generator; a Timer takes its next step, and the execute callback waits for its end.
     "timer_generator": (
         (IMPORT, f"{IMPORT}import threading\n"),
@@ -101,8 +105,6 @@ CHANGED: Dict[str, Changes] = {
         ),
         (SLEEP, "            yield\n"),
     ),
-    # Twice as often as the handout's example.
-    "twenty_hertz": ((RATE, "        rate = rospy.Rate(20)\n"),),
     # Odometry and scan are got by rospy.wait_for_message in the loop, which has no Rate.
     "wait_for_message": (
         (SUBSCRIBERS, ""),
@@ -126,12 +128,6 @@ CHANGED: Dict[str, Changes] = {
             f"            self.odom_cb(odom.result())\n            self.scan_cb(scan.result(timeout=2.0))\n{POSE_READ}",
         ),
         (SLEEP, ""),
-    ),
-    # Paced by the wall clock: time.sleep instead of a Rate.
-    "wall_sleep": (
-        (IMPORT, f"{IMPORT}import time\n"),
-        (RATE, ""),
-        (SLEEP, "            time.sleep(0.1)\n"),
     ),
 }
 

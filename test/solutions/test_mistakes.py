@@ -1,43 +1,39 @@
-"""Two and three mistakes in one server, a sample that a seed draws: each report names what its mistakes explain."""
+"""Two mistakes in one server that were once judged wrongly: the report names what each explains, and nothing else.
 
-import itertools
-import random
+All pairs of mistakes are judged over recordings, in test/unit/grading/test_pairs.py.
+"""
 
 import pytest
 from graded import graded
-from mistakes import ALLOWED, MISTAKES, with_mistakes
+from right_solutions import SERVER, TURN, changed
 
 from robocop_grading.grades import CheckOutcome
 
-SEED = 1
-SAMPLE = {1: 3, 2: 6, 3: 3}  # how many combinations of so many mistakes
-
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]
-
-
-def excluded(names):
-    """Return whether one of these mistakes can't be made beside another one."""
-    return any(MISTAKES[name].excludes in names for name in names)
-
-
-def drawn():
-    """The sample, besides what was graded wrongly once: combinations of mistakes, without those that exclude others."""
-    numbers = random.Random(SEED)
-    found = [("drives_first", "never_ends"), ("never_preempted", "turns_slowly")]
-    for size, number in SAMPLE.items():
-        possible = [it for it in itertools.combinations(MISTAKES, size) if not excluded(it)]
-        found += numbers.sample(possible, number)
-    return found
+LOOP = "        while not rospy.is_shutdown():\n"
+DRIVES_FIRST = ((LOOP, f"        self.drive(0.15, 0.0)\n        rospy.sleep(1.0)\n{LOOP}"),)
+NEVER_ENDS = (
+    ("if position_error < 0.1:", "if position_error < 0.0:"),
+    ("abs(angle_error) > 0.1:", "abs(angle_error) > 0.1 and position_error > 0.1:"),
+    ("self.drive(0.2,", "self.drive(0.0 if position_error < 0.1 else 0.2,"),
+)
+NEVER_PREEMPTED = (("if self.server.is_preempt_requested():", "if False:"),)
+TURNS_SLOWLY = ((TURN, TURN.replace("0.8", "0.5")),)  # allowed
+LOST_BY_DRIVING_FIRST = "turns_to_goal already_there stops_at_obstacle"
+LOST_BY_NEVER_ENDING = (
+    "reaches_goal goal_behind already_there far_goal only_ahead_counts odd_scans newer_goal next_goal success_result"
+)
 
 
-@pytest.mark.parametrize("names", drawn(), ids="+".join)
-def test_report_names_what_its_mistakes_explain_and_nothing_else(names, tmp_path):
-    grade = graded("+".join(names), with_mistakes(names), tmp_path)
-    expected = {check for name in names if name not in ALLOWED for check in MISTAKES[name].lost.split()}
-    if len(names) > 1:
-        expected |= {check for name in names if name not in ALLOWED for check in MISTAKES[name].beside.split()}
-    assert not grade.tracebacks
-    assert {it.name for it in grade.checks if it.outcome is not CheckOutcome.PASSED} <= expected
-    assert bool(grade.mistakes) == bool(expected)
-    if len(names) == 1:
-        assert {it.name for it in grade.checks if it.outcome is not CheckOutcome.PASSED} == expected
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "changes, lost",
+    [
+        ((*DRIVES_FIRST, *NEVER_ENDS), f"{LOST_BY_DRIVING_FIRST} {LOST_BY_NEVER_ENDING}"),
+        ((*NEVER_PREEMPTED, *TURNS_SLOWLY), "cancel newer_goal"),
+    ],
+    ids=["drives first and never ends", "never preempted and turns slowly"],
+)
+def test_report_names_what_its_mistakes_explain_and_nothing_else(changes, lost, tmp_path):
+    grade = graded("two mistakes", changed("two mistakes", SERVER, changes), tmp_path)
+    assert not grade.tracebacks and grade.mistakes
+    assert {it.name for it in grade.checks if it.outcome is not CheckOutcome.PASSED} <= {*lost.split()}

@@ -74,21 +74,9 @@ def test_node_that_connects_while_goals_run_leaves_the_same_records_each_time(tm
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_correct_solution_gets_full_marks_whatever_scenarios_are_drawn(seed, tmp_path):
-    grade = graded("base_server", RIGHT["base_server"], tmp_path, seed)
+def test_correct_solution_gets_full_marks_for_drawn_scenarios(tmp_path):
+    grade = graded("base_server", RIGHT["base_server"], tmp_path, seed=1)
     assert {check.name: check.words for check in grade.checks if check.outcome is not CheckOutcome.PASSED} == {}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("clock", ["rospy.get_time()", "time.time()", "rospy.sleep(0) or rospy.Time.now().to_sec()"])
-def test_loop_that_waits_by_looking_at_a_clock_is_a_right_one(clock, tmp_path):
-    pace, wait = "            rate.sleep()\n", f"            end = {clock} + 0.1\n            while {clock} < end:\n"
-    text = RIGHT["base_server"].replace("import math\n", "import math\nimport time\n")
-    assert text.count(pace) == 1
-    only = ("reaches_goal", "feedback_rate", "stops_at_obstacle", "cancel")
-    grade = graded("looks", text.replace(pace, f"{wait}                pass\n"), tmp_path, only=only)
-    assert grade.failed() == []
 
 
 # Adds to a server: the node ends when rospy's time is another one than that of a message on /clock.
@@ -134,32 +122,24 @@ def test_reference_solution_gets_full_marks_and_the_extra_point(tmp_path):
     assert f"{plan.points:g} of {plan.points:g} points, {plan.extra:g} of {plan.extra:g} extra" in done.stdout
 
 
-@pytest.mark.parametrize("submission", ["scripts/robocop_goto_as.py", pytest.param("", marks=pytest.mark.slow)])
-def test_skeleton_or_its_server_is_graded_and_the_report_names_what_is_missing(submission, tmp_path):
+def test_server_of_the_skeleton_is_graded_and_the_report_names_what_is_missing(tmp_path):
     made = command("robocop_new.py", str(tmp_path / "lab"))
     assert made.returncode == 0, made.stderr
-    done = command("robocop_grade.py", str(tmp_path / "lab" / submission), "--report", str(tmp_path / "report"))
+    done = command(
+        "robocop_grade.py", str(tmp_path / "lab/scripts/robocop_goto_as.py"), "--report", str(tmp_path / "report")
+    )
     assert done.returncode == 1
     assert "No action server was created, or it was not started" in done.stdout, done.stdout + done.stderr
     html = (tmp_path / "report" / "report.html").read_text()
     assert "No action server was created" in html and "http" not in html and "src=" not in html
-    if submission:  # the skeleton's bridge runs, and its scenarios can be replayed
-        assert "replay" not in html, "nothing happens in it"
+    assert "replay" not in html, "nothing happens in it"
     assert (tmp_path / "report" / "report.json").exists()
     with rosbag.Bag(tmp_path / "report" / "server-start.bag") as bag:  # one that was closed
         assert "/scan" in bag.get_type_and_topic_info().topics
     assert command("robocop_new.py", str(tmp_path / "lab")).returncode == 1
 
 
-@pytest.mark.parametrize(
-    "numbers",
-    [
-        [signal.SIGINT],
-        pytest.param([signal.SIGTERM, signal.SIGTERM], marks=pytest.mark.slow),
-        pytest.param([signal.SIGHUP, signal.SIGINT], marks=pytest.mark.slow),
-    ],
-)
-def test_interrupted_grading_leaves_no_folders_or_processes_behind(numbers, tmp_path):
+def test_grading_interrupted_twice_leaves_no_folders_or_processes_behind(tmp_path):
     solution, scratch = tmp_path / "robocop_goto_as.py", tmp_path / "scratch"
     solution.write_text(RIGHT["base_server"])
     scratch.mkdir()
@@ -176,7 +156,7 @@ def test_interrupted_grading_leaves_no_folders_or_processes_behind(numbers, tmp_
         assert grading.poll() is None and time.monotonic() < deadline, (tmp_path / "output").read_text()
         time.sleep(0.01)
     with busy_processes():
-        for number in numbers:
+        for number in (signal.SIGHUP, signal.SIGINT):
             grading.send_signal(number)
         assert grading.wait(240.0) == INTERRUPTED, (tmp_path / "output").read_text()
     assert "Traceback" not in (tmp_path / "output").read_text()
