@@ -22,11 +22,12 @@ from .errors import GradingError, GradingSetupError, PlanError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
 from .grades import CheckOutcome, CheckResult, Grade, scored
-from .plan import MIDDLE, Plan
+from .plan import Plan
 from .plan_file import load
 from .report.write import make_report_folder
 from .runner import Runner
 from .sandbox.bubblewrap import Sandbox, expect_private, open_sandbox
+from .scenarios import MIDDLE
 from .submission import prepare_submission
 from .texts import printable, printable_lines
 

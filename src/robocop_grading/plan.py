@@ -1,116 +1,27 @@
-"""What a grading plan consists of: limits, scenarios, and the checks with their points."""
+"""What a grading plan consists of: limits, the checks with their points, and the scenarios that they examine."""
 
-import math
 from dataclasses import MISSING, dataclass, replace
 from pathlib import Path
-from typing import Any, Iterable, List, Sequence, Tuple
+from typing import Iterable, List, Sequence, Tuple
 
-from aro_robocop_goto_as.geometry import Pose2D, compose
 from aro_robocop_goto_as.param_loading import parameter, several
-from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry
 
 from .checks import CHECKS
 from .errors import PlanError
 from .handout import Limits
 from .packages import Packages
+from .scenarios import MIDDLE, Scenario
 
-HEIGHT = 0.5  # [m] of obstacles, well above the lidar
 PARTS = ("server", "bridge")
-MAX_OFFSET = 20.0  # [m] largest coordinate within a scenario
 AGAIN = "_again"  # ends the name of a scenario's repetition with a new node
 START = "start"  # the recording of the node's start; every server has one
 BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "pending")  # fixed, not in the plan's file
 TICK = 0.1  # [s] of a session
-MIDDLE = 0  # the seed with which every range stands for its middle
 
 
 def total(points: Iterable[float]) -> float:
     """The sum of points without rounding errors."""
     return round(sum(points, 0.0), 6)
-
-
-def _numbers(count: int) -> Any:
-    """A field for coordinates and sizes."""
-    return several(count, -MAX_OFFSET, MAX_OFFSET)
-
-
-@dataclass(frozen=True)
-class Step:
-    """One line of a server scenario's script."""
-
-    goal: Tuple[float, ...] = _numbers(2)  # x, y [m] in the frame `of`
-    of: str = parameter("odom", choices=("odom", "robot"))  # robot: x ahead, y left
-    ends: str = parameter("", choices=("SUCCEEDED", "ABORTED", "PREEMPTED"))  # the terminal state to wait for
-    run: float = parameter(0.0, 0.0, 1e6, key="for")  # [s] time to let pass instead of waiting for a terminal state
-    cancel: bool = False
-    place: Tuple[float, ...] = _numbers(3)  # x, y [m], yaw [rad] in the odom frame of the scenario's start
-
-    def conflicts(self) -> List[str]:
-        """What is wrong, in words, unless there is exactly one thing to do, and to wait for after a goal."""
-        things = sum(map(bool, (self.goal, self.cancel, self.place)))
-        if things != 1:
-            return ["expected one of goal, cancel and place in a step"]
-        if self.goal and (bool(self.ends) == bool(self.run) or 0.0 < self.run < TICK):
-            return [f"expected `ends`, or `for` of {TICK:g} s or more, after a goal"]
-        return []
-
-
-@dataclass(frozen=True)
-class Push:
-    """A push: once the robot is farther than `after` [m] from odom's origin, it is moved, whatever is commanded."""
-
-    after: float
-    v: float  # [m/s]
-    w: float  # [rad/s]
-    seconds: float
-
-
-@dataclass(frozen=True)
-class Block:
-    """An obstacle that stands on the floor, in odom at the scenario's start."""
-
-    box: Tuple[float, ...] = _numbers(5)  # x, y [m], yaw [rad], length and width [m]
-    cylinder: Tuple[float, ...] = _numbers(3)  # x, y and radius [m]
-
-    def conflicts(self) -> List[str]:
-        """What is wrong with its shape, in words."""
-        if bool(self.box) == bool(self.cylinder):
-            return ["expected one of box and cylinder"]
-        sizes = self.box[3:] or self.cylinder[2:]
-        return [] if min(sizes) > 0.0 else [f"expected sizes above 0, got {sizes}"]
-
-    @property
-    def pose(self) -> Pose2D:
-        """odom_from_block."""
-        return Pose2D(*self.box[:3]) if self.box else Pose2D(*self.cylinder[:2])
-
-    @property
-    def geometry(self) -> Geometry:
-        """Its shape."""
-        return Box((self.box[3], self.box[4], HEIGHT)) if self.box else Cylinder(self.cylinder[2], HEIGHT)
-
-    @property
-    def outline(self) -> Tuple[float, ...]:
-        """The block's outline from above, in odom: x, y, x, y, ... [m]."""
-        if self.box:
-            length, width = self.box[3:]
-            corners = [(sx * length / 2, sy * width / 2) for sx, sy in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
-        else:
-            radius = self.cylinder[2]
-            corners = [(radius * math.cos(n * math.pi / 8), radius * math.sin(n * math.pi / 8)) for n in range(17)]
-        return tuple(round(it, 4) for corner in corners for it in compose(self.pose, Pose2D(*corner))[:2])
-
-
-@dataclass(frozen=True)
-class Scenario:
-    """A script that starts with the robot at odom's origin."""
-
-    name: str
-    about: str
-    steps: Tuple[Step, ...]
-    obstacles: Tuple[Block, ...] = ()
-    odd_scan: bool = False
-    pushes: Tuple[Push, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -137,7 +48,7 @@ class Plan:
     limits: Limits
     scenarios: Tuple[Scenario, ...]
     checks: Tuple[CheckPlan, ...]
-    seed: int = MIDDLE  # with which the scenarios' numbers were drawn
+    seed: int = MIDDLE  # with which the scenarios were drawn
     is_whole: bool = True  # not only some of the file's checks
     packages: Packages = Packages()  # that the lab has in addition
 

@@ -1,10 +1,8 @@
-"""Reads a grading plan from its file (config/grading.yaml), and draws the numbers of its scenarios."""
+"""Reads a grading plan from its file, such as config/grading.yaml."""
 
-import random
-import re
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, List, Mapping, Optional, Sequence, Type, TypeVar
+from typing import Any, Mapping, Optional, Sequence, Type, TypeVar
 
 import yaml
 
@@ -16,12 +14,8 @@ from .checks import CHECKS
 from .errors import PlanError
 from .handout import Limits
 from .packages import Packages
-from .plan import AGAIN, BRIDGE_SCENARIOS, MIDDLE, START, Block, CheckPlan, Plan, Push, Scenario, Step
-
-MAX_SEED = 999_999
-DIGITS = 3  # of a drawn number after the point: [mm], [mrad], [ms]
-_NUMBER = r"-?\d+(?:\.\d+)?"
-_RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})", re.ASCII)
+from .plan import BRIDGE_SCENARIOS, START, CheckPlan, Plan
+from .scenarios import MAX_SEED, MIDDLE, SCRIPTS, drawn
 
 T = TypeVar("T")
 
@@ -30,35 +24,13 @@ T = TypeVar("T")
 class _File:
     """The sections of the plan's file; a section in which everything is commented out may be left empty."""
 
-    scenarios: list = parameter()
     checks: dict = parameter()
     limits: Optional[dict] = None
     packages: Optional[dict] = None
 
 
-@dataclass(frozen=True)
-class _ScenarioEntry:
-    """A scenario in the file."""
-
-    name: str = parameter()
-    about: str = parameter()
-    script: list = parameter()
-    obstacles: Optional[list] = None
-    pushes: Optional[list] = None
-    odd_scan: bool = False
-
-    def conflicts(self) -> List[str]:
-        """What is wrong with its name or its script, in words."""
-        named = re.fullmatch(r"\w+", self.name) is not None
-        problems = [] if named else [f"name: expected letters, digits and _, got {self.name!r}"]
-        return problems + ([] if self.script else ["script: expected steps, got none"])
-
-
 def load(path: Path, seed: int = MIDDLE) -> Plan:
-    """Read the plan and draw its scenarios; PlanError or ParameterError names the file and the mistake in it.
-
-    Seed 0 takes the middle of each range, and the file's order; another seed draws the order, too.
-    """
+    """Read the plan and draw the scenarios; PlanError or ParameterError names the file and the mistake in it."""
     if not MIDDLE <= seed <= MAX_SEED:
         raise PlanError(f"--seed {seed}: expected a number from {MIDDLE} to {MAX_SEED}")
     try:
@@ -68,18 +40,12 @@ def load(path: Path, seed: int = MIDDLE) -> Plan:
     except (ValueError, RecursionError, yaml.YAMLError) as error:
         raise PlanError(f"{path}: {error}") from error
     file = _loaded(_File, raw, f"{path}")
-    scenarios = [_scenario(entry, f"{path}: scenarios", seed) for entry in file.scenarios]
-    if seed != MIDDLE:  # the node was started elsewhere only before the first scenario
-        scenarios[1:] = random.Random(seed).sample(scenarios[1:], len(scenarios[1:]))
-    names = [scenario.name for scenario in scenarios]
-    for name in names:
-        if names.count(name) > 1 or name in (START, *BRIDGE_SCENARIOS) or name.endswith(AGAIN):
-            raise PlanError(f"{path}: scenarios: {name}: expected a unique name that is not reserved")
-    known = {"server": (START, *names), "bridge": BRIDGE_SCENARIOS}
+    scenarios = drawn(seed)
+    known = {"server": (START, *SCRIPTS), "bridge": BRIDGE_SCENARIOS}
     checks = tuple(_check_plan(name, entry, known, f"{path}: checks") for name, entry in file.checks.items())
     limits = _loaded(Limits, file.limits or {}, f"{path}: limits")
     packages = _loaded(Packages, file.packages or {}, f"{path}: packages")
-    return Plan(path, limits, tuple(scenarios), checks, seed, packages=packages)
+    return Plan(path, limits, scenarios, checks, seed, packages=packages)
 
 
 def _loaded(cls: Type[T], raw: Any, where: str) -> T:
@@ -88,47 +54,6 @@ def _loaded(cls: Type[T], raw: Any, where: str) -> T:
         raise PlanError(f"{where}: expected keys with values, got {raw!r}")
     known = declared(cls)
     return from_dict(cls, {str(it): value for it, value in raw.items() if value is not None or it not in known}, where)
-
-
-def drawn(value: Any, numbers: Optional[random.Random], where: str) -> Any:
-    """A value of the plan, with a number for each range LOW..HIGH in it: drawn, or the middle without `numbers`.
-
-    PlanError if a range is empty.
-    """
-    if isinstance(value, dict):
-        return {key: drawn(it, numbers, f"{where}: {key}") for key, it in value.items()}
-    if isinstance(value, list):
-        return [drawn(it, numbers, where) for it in value]
-    match = _RANGE.fullmatch(value) if isinstance(value, str) else None
-    if match is None:
-        return value
-    low, high = map(float, match.groups())
-    if low > high:
-        raise PlanError(f"{where}: {value}: expected LOW..HIGH, with LOW not above HIGH")
-    return round((low + high) / 2.0 if numbers is None else numbers.uniform(low, high), DIGITS)
-
-
-def _scenario(raw: Any, where: str, seed: int) -> Scenario:
-    entry = _loaded(_ScenarioEntry, raw, where)
-    where, numbers = f"{where}: {entry.name}", None if seed == MIDDLE else random.Random(f"{seed}/{entry.name}")
-    # In this order, by which each seed has its numbers.
-    obstacles = drawn(entry.obstacles or [], numbers, where)
-    script = drawn(entry.script, numbers, where)
-    pushes = drawn(entry.pushes or [], numbers, where)
-    blocks = tuple(_loaded(Block, it, f"{where}: obstacles") for it in obstacles)
-    steps = tuple(_loaded(Step, step, f"{where}: script") for step in script)
-    for number, step in enumerate(steps):
-        if step.cancel and not any(earlier.goal for earlier in steps[:number]):
-            raise PlanError(f"{where}: cancel: expected an earlier goal in the script")
-    moved = tuple(_push(push, f"{where}: pushes") for push in pushes)
-    return Scenario(entry.name, entry.about, steps, blocks, entry.odd_scan, moved)
-
-
-def _push(raw: Any, where: str) -> Push:
-    names = [spec.name for spec in fields(Push)]
-    if not isinstance(raw, list) or len(raw) != len(names):
-        raise PlanError(f"{where}: expected {len(names)} numbers ({', '.join(names)}), got {raw!r}")
-    return from_dict(Push, dict(zip(names, raw)), where)
 
 
 def _check_plan(name: str, raw: Any, known: Mapping[str, Sequence[str]], where: str) -> CheckPlan:

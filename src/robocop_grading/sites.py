@@ -6,7 +6,7 @@ from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose3, lifted
 from aro_robocop_goto_as.shapes import Plane
 from aro_robocop_goto_as.world.model import Obstacle, World
 
-from .plan import HEIGHT, Block
+from .scenarios import HEIGHT, Block
 
 ORIGIN = Pose2D()  # world_from_odom at a scenario's start where all frames coincide
 SITE = Pose2D(40.0, -15.0, 0.7)  # likewise, where confusing two frames has an effect

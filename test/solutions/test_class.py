@@ -35,11 +35,9 @@ with Client(sys.argv[1], timeout=60.0) as client:
 """  # prints the name of a worker that has something to do
 PLAN = """
 limits: {}
-scenarios:
-  - {name: near, about: A goal nearer than 0.1 m, script: [{goal: [0.03, 0.02], ends: SUCCEEDED}]}
 checks:
   action_server: {part: server, points: 1, scenarios: [start]}
-  already_there: {part: server, points: 1, scenarios: [near]}
+  already_there: {part: server, points: 1, scenarios: [already_there]}
 """
 
 

@@ -23,10 +23,11 @@ from robocop_hosting.workspace import exclusive, places
 from ..cli import INTERRUPTED, WRONG_USE
 from ..errors import GradingSetupError
 from ..files.exports import class_folder, people
-from ..plan import MIDDLE, Plan
-from ..plan_file import MAX_SEED, load
+from ..plan import Plan
+from ..plan_file import load
 from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private, open_sandbox
+from ..scenarios import MAX_SEED, MIDDLE
 from ..submission import lab_environment
 from ..texts import printable_lines, shortened
 from .hand_ins import collect

@@ -13,8 +13,9 @@ from aro_robocop_goto_as.ros import convert
 
 from .. import record as rec
 from ..handout import ACTION
-from ..plan import TICK, Block
+from ..plan import TICK
 from ..record import Record
+from ..scenarios import Block
 from ..sites import ORIGIN
 from .job import Job, send_to_grader
 from .node import Node, Spent

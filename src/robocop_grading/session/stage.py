@@ -24,8 +24,8 @@ from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.params import SimParams
 
 from ..handout import AHEAD
-from ..plan import Block
 from ..record import Sample
+from ..scenarios import Block
 from ..sites import ORIGIN, world_of
 from .node import Node
 from .scenario_bag import ScenarioBag
