@@ -10,10 +10,10 @@ would hit them: cones of 10 and of 30 degrees give the same distance.
 import math
 import random
 from dataclasses import dataclass, replace
-from typing import Callable, Dict, Tuple
+from typing import Callable, Dict, Tuple, Union
 
 from aro_robocop_goto_as.geometry import Pose2D, compose
-from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry
+from aro_robocop_goto_as.shapes import Box, Cylinder
 
 HEIGHT = 0.5  # [m] of obstacles, well above the lidar
 MIDDLE = 0  # the seed with which every range stands for its middle
@@ -51,7 +51,7 @@ class Block:
     """An obstacle that stands on the floor."""
 
     pose: Pose2D  # odom_from_block
-    geometry: Geometry
+    geometry: Union[Box, Cylinder]
 
     @property
     def outline(self) -> Tuple[float, ...]:
