@@ -20,7 +20,12 @@ def test_package_is_found_from_its_folder_or_its_workspace(tmp_path: Path) -> No
         assert (package.name, package.path) == (LAB, tmp_path / "src" / LAB)
 
 
-WORKSPACE = {LAB: "<exec_depend>maths</exec_depend>", "maths": "<depend>units</depend>", "units": "", "other": ""}
+WORKSPACE = {
+    LAB: "<exec_depend>maths</exec_depend><depend>aro_sim</depend>",
+    "maths": "<depend>units</depend>",
+    "units": "",
+    "other": "",
+}
 
 
 def workspace(top: Path) -> Path:
