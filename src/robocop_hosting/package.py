@@ -60,7 +60,9 @@ def find_package(path: str, launch: str = "", grades: bool = True) -> Package:
     top = top.resolve()
     named = _packages(top)
     if not named:
-        raise HostingError(f"{path}: no package.xml in it or below it (or only beside CATKIN_IGNORE); expected a catkin package")
+        raise HostingError(
+            f"{path}: no package.xml in it or below it, but for ones with CATKIN_IGNORE; expected a package"
+        )
     name, folder = _chosen(path, named, launch)
     if not NAME.fullmatch(name):
         raise HostingError(f"{folder}/package.xml: expected a <name> of letters, digits, _ and -, got {name!r}")
