@@ -32,9 +32,11 @@ def fit(names):
     return not any(ENVIRONMENTS[one][0].keys() & ENVIRONMENTS[two][0] for one, two in itertools.combinations(names, 2))
 
 
-# All that are harmless beside each of the others; and the others in pairs, only with --all.
+PAIRS = [pair for pair in itertools.combinations(OTHERS, 2) if fit(pair)][::3]
+
+# All that are harmless beside each of the others; and four pairs of the others, only with --all.
 TERMINALS = [(other, *(name for name in HARMLESS if fit((other, name)))) for other in OTHERS]
-TERMINALS += [pytest.param(pair, marks=pytest.mark.slow) for pair in itertools.combinations(OTHERS, 2) if fit(pair)]
+TERMINALS += [pytest.param(pair, marks=pytest.mark.slow) for pair in PAIRS]
 
 
 @pytest.fixture
