@@ -13,6 +13,9 @@ ROOT = Path(__file__).resolve().parents[2]
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("hosting")]  # it uses the workspace that hosting tests build
 
 
+PARTS = {"robot", "scan"}
+
+
 def parts_shown(desktop):
     """The parts of the scene in RViz; None unless the Displays panel is free of errors and warnings."""
     window = desktop.window(TITLE)
