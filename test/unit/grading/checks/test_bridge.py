@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import Callable, Iterable, List, Tuple
+from typing import Callable, Iterable, List, Sequence, Tuple
 
 import pytest
 from grading_records import LIMITS
@@ -158,8 +158,9 @@ def test_reports_that_follow_the_truth_pass_in_any_words(report: Callable[[float
 
 
 @pytest.mark.parametrize("period", [0.5, 1.0, 2.0])
-def test_reports_that_are_late_by_one_pass(period: float) -> None:
-    late = _driven(lambda time: _named(_states(max(1.0, time - period))[-1:]), period)
+@pytest.mark.parametrize("told", [rec.STATUS_NAMES, range(5)])
+def test_reports_that_are_late_by_one_pass(told: Sequence[object], period: float) -> None:
+    late = _driven(lambda time: [f"state: {told[_states(max(1.0, time - period))[-1]]}"], period)
     assert CHECKS["reports_status"](late, LIMITS) is PASSED
 
 
