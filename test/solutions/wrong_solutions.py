@@ -697,10 +697,4 @@ ADVISED: Tuple[Wrong, ...] = (
         "it does not cancel an older goal that is PENDING",
         ("if self.sent:", "if self.client.get_state() == GoalStatus.ACTIVE:"),
     ),
-    _bridge(
-        "bridge_pending_is_active",
-        "reports_status",
-        "reports ACTIVE while the newest goal is PENDING",
-        (STATE, "GoalStatus.to_string(max(GoalStatus.ACTIVE, self.client.get_state()))"),
-    ),
 )

@@ -7,7 +7,7 @@ from typing import List, Mapping, Optional, Sequence
 from ..handout import Limits
 from ..record import PREEMPTED, RECALLED, Click, Record, SentGoal
 from . import bridge_causes as causes
-from .bridge_reports import is_silent, wrong_reports, wrong_state_reported
+from .bridge_reports import is_silent, wrong_reports
 from .node_lifetime import no_exception, stays_alive
 from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
@@ -39,7 +39,7 @@ def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Fa
 
 @check("track", explain=_explained)
 def forwards_goal(record: Record, limits: Limits) -> Verdict:
-    """Each 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position, and nothing else is."""
+    """Each 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position; no other goal is sent."""
     if not record.clicks:
         return NotReached("there was no click")
     for number, click in enumerate(record.clicks):
@@ -172,8 +172,7 @@ def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
     if record is None or any(_crash(it, limits) for it in records.values()):
         return []
     if "click" in records and reports_status(records["click"], limits) is PASSED and "watched" in record.marks:
-        wrong = wrong_state_reported(record)
-        found += [causes.REPORTS_STOP] if is_silent(record, limits) else [wrong.cause] if wrong else []
+        found += [causes.REPORTS_STOP] if is_silent(record, limits) else []
     if "replace" in records and cancels_older(records["replace"], limits) is PASSED:
         verdict = cancels_older(record, limits)
         if isinstance(verdict, Failed) and verdict.kind is Kind.NOT_CANCELLED:

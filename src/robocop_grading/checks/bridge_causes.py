@@ -30,8 +30,8 @@ OLDER_POSITION = (
 )
 NOT_FORWARDED = "The click was not forwarded"
 OTHER_POSITION = (
-    "The goal does not have the click's position in odom: goal.position is msg.pose.position, transformed to odom if it "
-    "is in another frame"
+    "The goal does not have the click's position in odom: goal.position is msg.pose.position, transformed to odom if "
+    "it is in another frame"
 )
 FROM_HEADER = "take its frame from header.frame_id"
 OWN_SERVER = "The bridge has an action server robocop_goto_as of its own, so its client never waits for the real one"

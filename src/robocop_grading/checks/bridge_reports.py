@@ -66,7 +66,7 @@ def wrong_reports(record: Record, limits: Limits) -> Optional[Failed]:
     lines = _between(record, start + 0.2, record.marks.get("watched", math.inf))
     count = len(_grouped([line for line in lines if not _says_nothing(line)]))
     if count >= limits.status_reports:
-        return _reports_stopped(record, _grouped(lines)) or wrong_state_reported(record)
+        return _reports_stopped(record, _grouped(lines)) or _wrong_state_reported(record)
     wanted = f"{limits.status_reports} reports within {limits.status_span:g} s"
     if len(_grouped(lines)) >= limits.status_reports:
         empty = next(line for line in lines if _says_nothing(line))
@@ -127,7 +127,7 @@ def _state_intervals(record: Record) -> List[StateInterval]:
     return found
 
 
-def wrong_state_reported(record: Record) -> Optional[Failed]:
+def _wrong_state_reported(record: Record) -> Optional[Failed]:
     """The failure if reports that name states, or number them, are the same after a goal's end, or are untrue.
 
     What is told of running goals has to differ from what is told of ended ones, in whatever words. Beyond that, only a

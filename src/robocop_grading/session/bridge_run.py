@@ -154,7 +154,7 @@ class BridgeRun(Run):
     def _begin(self, name: str) -> None:
         """Begin where map is not odom, and drive the robot away from odom's origin: a frame taken for another shows."""
         self.begin(name, SITE)
-        for twist, seconds in ((Twist2D(0.2, 0.5), 3.0), (STANDSTILL, 1.0)):
+        for twist, seconds in ((Twist2D(0.2, 1.0), 1.5), (STANDSTILL, 0.5)):
             self.stage.command(twist)
             self.settle(seconds)
 
