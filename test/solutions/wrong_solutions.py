@@ -350,6 +350,19 @@ WRONG: Tuple[Wrong, ...] = (
     _bridge("bridge_timer_dies", "bridge_alive", "Error", ("self.client.get_state())", "self.client.get_status())")),
     _bridge("bridge_never_cancels", "cancels_older", "send_goal() alone", ("self.client.cancel_goal()", "pass")),
     _bridge(
+        "bridge_ignores_its_first_click",
+        "forwards_goal",
+        "The click was not forwarded",
+        ("        self.client.wait_for_server()\n        self.sent = False\n", "        self.sent = None\n"),
+        (TIMER, f"{TIMER}        self.client.wait_for_server()\n"),
+        (
+            "        msg.header.stamp = rospy.Time(0)\n",
+            "        if self.sent is None:\n            self.sent = False\n            return\n"
+            "        msg.header.stamp = rospy.Time(0)\n",
+        ),
+        alone=True,
+    ),
+    _bridge(
         "bridge_sends_the_click_before",
         "forwards_goal",
         "has the position of the older click",
