@@ -335,7 +335,7 @@ WRONG: Tuple[Wrong, ...] = (
         "bridge_other_topic", "forwards_goal", "does not subscribe", ("'/move_base_simple/goal'", "'/move_base/goal'")
     ),
     _bridge("bridge_never_sends", "forwards_goal", "No goal was sent", ("self.client.send_goal(goal)", "pass")),
-    _bridge("bridge_logs_debug", "reports_status", "Nothing is logged", ("rospy.loginfo(", "rospy.logdebug(")),
+    _bridge("bridge_logs_debug", "reports_status", "Too little is logged", ("rospy.loginfo(", "rospy.logdebug(")),
     _bridge(
         "bridge_publishes_figures",
         "reports_status",
@@ -350,8 +350,21 @@ WRONG: Tuple[Wrong, ...] = (
     _bridge("bridge_timer_dies", "bridge_alive", "Error", ("self.client.get_state())", "self.client.get_status())")),
     _bridge("bridge_never_cancels", "cancels_older", "send_goal() alone", ("self.client.cancel_goal()", "pass")),
     _bridge(
+        "bridge_ignores_its_first_click",
+        "forwards_goal",
+        "The click was not forwarded",
+        ("        self.client.wait_for_server()\n        self.sent = False\n", "        self.sent = None\n"),
+        (TIMER, f"{TIMER}        self.client.wait_for_server()\n"),
+        (
+            "        msg.header.stamp = rospy.Time(0)\n",
+            "        if self.sent is None:\n            self.sent = False\n            return\n"
+            "        msg.header.stamp = rospy.Time(0)\n",
+        ),
+        alone=True,
+    ),
+    _bridge(
         "bridge_sends_the_click_before",
-        "cancels_older",
+        "forwards_goal",
         "has the position of the older click",
         (POSITION, "self.last, goal.position = pose.pose.position, getattr(self, 'last', pose.pose.position)"),
         alone=True,
@@ -359,7 +372,7 @@ WRONG: Tuple[Wrong, ...] = (
     _bridge(
         "bridge_reports_by_the_clock",
         "reports_status",
-        "reports ACTIVE while the goal is ABORTED",
+        "reports ACTIVE while the newest goal is ABORTED",
         ("        self.sent = True\n", "        self.sent = rospy.get_time()\n"),
         (STATE, "'ACTIVE' if self.sent and rospy.get_time() < self.sent + 20.0 else 'SUCCEEDED'"),
         alone=True,
@@ -375,13 +388,13 @@ WRONG: Tuple[Wrong, ...] = (
     _bridge(
         "bridge_rounds_clicks",
         "forwards_goal",
-        "The position is rounded",
+        "does not have the click's position in odom",
         (POSITION, "goal.position.x, goal.position.y = round(pose.pose.position.x, 1), round(pose.pose.position.y, 1)"),
     ),
     _bridge(
         "bridge_transforms_from_map",
-        "goal_frame",
-        "The click in base_footprint is transformed as if it were in map",
+        "forwards_goal",
+        "The click in odom is transformed as if it were in map",
         (
             "        msg.header.stamp = rospy.Time(0)\n",
             "        msg.header.stamp, msg.header.frame_id = rospy.Time(0), 'map'\n",
@@ -582,7 +595,7 @@ WRONG: Tuple[Wrong, ...] = (
     ),
     _bridge(
         "bridge_unsubscribes",
-        "cancels_older",
+        "forwards_goal",
         "After its first goal the bridge sent no other click",
         ("        rospy.Subscriber(", "        self.clicks = rospy.Subscriber("),
         ("        self.sent = True\n", "        self.clicks.unregister()\n"),
@@ -696,11 +709,5 @@ ADVISED: Tuple[Wrong, ...] = (
         "cancels_older",
         "it does not cancel an older goal that is PENDING",
         ("if self.sent:", "if self.client.get_state() == GoalStatus.ACTIVE:"),
-    ),
-    _bridge(
-        "bridge_pending_is_active",
-        "reports_status",
-        "reports ACTIVE while the goal is PENDING",
-        (STATE, "GoalStatus.to_string(max(GoalStatus.ACTIVE, self.client.get_state()))"),
     ),
 )

@@ -7,7 +7,7 @@ from typing import List, Mapping, Optional, Sequence
 from ..handout import Limits
 from ..record import PREEMPTED, RECALLED, Click, Record, SentGoal
 from . import bridge_causes as causes
-from .bridge_reports import is_silent, wrong_reports, wrong_state_reported
+from .bridge_reports import is_silent, wrong_reports
 from .node_lifetime import no_exception, stays_alive
 from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
@@ -23,21 +23,40 @@ def _goals_of(record: Record, number: int) -> List[SentGoal]:
     return _goals_after(record, record.clicks[number], until)
 
 
-@check("track")
+def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Failed) -> Failed:
+    """The failure to forward a click; if clicks became goals before it and none after it, with what that means."""
+    times = [goal.time for record in records.values() for goal in record.goals]
+    number = sum(time < failure.time for time in times)
+    if failure.cause != causes.NOT_FORWARDED or not number or number < len(times):
+        return failure
+    sent = "goal" if number == 1 else f"{number} goals"
+    cause = (
+        f"After its first {sent} the bridge sent no other click: does the subscriber or its callback end, or is a flag "
+        "never cleared that says that a goal has been sent?"
+    )
+    return replace(failure, cause=cause)
+
+
+@check("track", explain=_explained)
 def forwards_goal(record: Record, limits: Limits) -> Verdict:
-    """A 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position."""
+    """Each 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position; no other goal is sent."""
     if not record.clicks:
         return NotReached("there was no click")
-    click, goals = record.clicks[0], _goals_of(record, 0)
-    wanted = f"x {click.x:g} y {click.y:g}"
-    if not goals:
-        return Failed(f"a goal at {wanted}", "no goal", click.time, causes.missing_connection(record), Kind.NO_GOAL)
-    goal = goals[-1]
-    if not causes.distance(goal, click.x, click.y) <= causes.POSITION_TOLERANCE:  # this way round NaN fails, too
-        seen = f"x {goal.x:.2f} y {goal.y:.2f}"
-        return Failed(wanted, seen, goal.time, causes.other_position(click, goal), Kind.OTHER_POSITION)
-    if len(goals) > 1:
-        return Failed("one goal", f"{len(goals)} goals", goals[1].time, "The click is sent more than once")
+    for number, click in enumerate(record.clicks):
+        goals, wanted = _goals_of(record, number), f"x {click.x:g} y {click.y:g}"
+        if not goals:
+            cause = causes.NOT_FORWARDED if record.goals else causes.missing_connection(record)
+            return Failed(f"a goal at {wanted}", "no goal", click.time, cause, Kind.NO_GOAL)
+        goal = goals[-1]
+        if not causes.distance(goal, click.x, click.y) <= causes.POSITION_TOLERANCE:  # this way round NaN fails, too
+            seen, cause = f"x {goal.x:.2f} y {goal.y:.2f}", causes.other_position(record, click, goal)
+            return Failed(wanted, seen, goal.time, cause, Kind.OTHER_POSITION)
+        if len(goals) > 1:
+            return Failed("one goal", f"{len(goals)} goals", goals[1].time, "The click is sent more than once")
+    for goal in record.goals:
+        if goal.time < record.clicks[0].time - 1e-6:
+            seen = f"a goal at x {goal.x:.2f} y {goal.y:.2f}"
+            return Failed("no goal before the first click", seen, goal.time, causes.UNASKED_GOAL)
     return PASSED
 
 
@@ -53,25 +72,22 @@ def reports_status(record: Record, limits: Limits) -> Verdict:
     return problem or PASSED
 
 
-def _explained(records: Mapping[str, Record], names: Sequence[str], failure: Failed) -> Failed:
-    """The failure to forward a click; if clicks became goals before it and none after it, with what that means."""
-    times = [goal.time for record in records.values() for goal in record.goals]
-    number = sum(time < failure.time for time in times)
-    if failure.cause != causes.NOT_FORWARDED or not number or any(records[name].goals for name in names):
-        return failure
-    if number < len(times):  # a later click in odom became a goal
-        return replace(failure, cause=causes.OTHER_FRAME_IGNORED)
-    sent = "goal" if number == 1 else f"{number} goals"
-    cause = (
-        f"After its first {sent} the bridge sent no other click: does the subscriber or its callback end, or is a flag "
-        "never cleared that says that a goal has been sent?"
-    )
-    return replace(failure, cause=cause)
+def _unasked_cancel(record: Record) -> Optional[Failed]:
+    """The failure to leave a goal alone for which no newer click has come."""
+    times = {cancel.time for cancel in record.cancels}
+    for goal in record.goals:
+        end = record.active_until(goal)
+        if end in times and not any(goal.time < click.time <= end for click in record.clicks):
+            seen = f"one {end - goal.time:.1f} s after the goal"
+            return Failed("no cancel request without a newer click", seen, end, causes.UNASKED_CANCEL)
+    return None
 
 
 @check("track", explain=_explained)
 def cancels_older(record: Record, limits: Limits) -> Verdict:
-    """A newer 2D Nav Goal cancels the older goal and is then sent itself."""
+    """A newer 2D Nav Goal cancels the older goal and is then sent itself; nothing else cancels a goal."""
+    if record.name == "click":
+        return _unasked_cancel(record) or NotReached("each goal ends before the next click comes")
     if len(record.clicks) < 2:
         return NotReached("there was no newer click")
     before, click = record.clicks[:2]
@@ -83,19 +99,11 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     older, newer = old[-1], [goal for goal in goals if goal.id != old[-1].id]
     cancelled = {change.id for change in record.statuses if change.status in (PREEMPTED, RECALLED)}
     if not newer:
-        cause = causes.CANCELLED_ONLY if older.id in cancelled else causes.NO_NEWER_GOAL
-        return Failed("the newer goal", "no goal", click.time, cause, Kind.NO_GOAL)
-    is_right = causes.distance(newer[-1], click.x, click.y) <= causes.POSITION_TOLERANCE  # NaN is not
-    if causes.distance(older, before.x, before.y) <= causes.POSITION_TOLERANCE and not is_right:
-        x, y = newer[-1].x, newer[-1].y
-        same = causes.distance(older, x, y) <= causes.POSITION_TOLERANCE
-        cause = causes.OLDER_POSITION if same else causes.other_position(click, newer[-1])
-        wanted, seen = f"x {click.x:g} y {click.y:g}", f"x {x:.2f} y {y:.2f}"
-        return Failed(wanted, seen, newer[-1].time, cause, Kind.OTHER_POSITION)
+        return Failed("the newer goal", "no goal", click.time, causes.NOT_FORWARDED, Kind.NO_GOAL)
     if newer[-1].id in cancelled:
         seen = "one for both" if older.id in cancelled else "one for the newer goal"
         wanted = "a cancel request for the older goal only"
-        return Failed(wanted, seen, newer[-1].time, causes.newer_cancelled(record, newer[-1]))
+        return Failed(wanted, seen, newer[-1].time, causes.NEWER_CANCELLED)
     if older.id not in cancelled:
         wanted = "a cancel request for the older goal"
         requests = [cancel for cancel in record.cancels if cancel.time >= click.time - 1e-6]
@@ -116,7 +124,7 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
     if not causes.has_client(record):
         return NotReached(causes.unconnected(record))
     clicked, wanted = record.marks.get("clicked", 0.0), "a goal once the server is running"
-    return Failed(wanted, "no goal", clicked, causes.WAITS_FOR_NO_SERVER, Kind.NO_GOAL)
+    return Failed(wanted, "no goal", clicked, causes.NOTHING_SENT, Kind.NO_GOAL)
 
 
 @check("track")
@@ -152,7 +160,7 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
             return Failed(f"a goal for the click in {click.frame}", "no goal", click.time, cause, Kind.NO_GOAL)
         goal = goals[-1]
         if not causes.distance(goal, click.odom_x, click.odom_y) <= causes.FRAME_TOLERANCE:
-            cause = causes.wrong_transform(record, click, goal)
+            cause = causes.other_position(record, click, goal)
             wanted = f"x {click.odom_x:.2f} y {click.odom_y:.2f} in odom"
             return Failed(wanted, f"x {goal.x:.2f} y {goal.y:.2f}", goal.time, cause, Kind.OTHER_POSITION)
     return PASSED
@@ -164,8 +172,7 @@ def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
     if record is None or any(_crash(it, limits) for it in records.values()):
         return []
     if "click" in records and reports_status(records["click"], limits) is PASSED and "watched" in record.marks:
-        wrong = wrong_state_reported(record)
-        found += [causes.REPORTS_STOP] if is_silent(record, limits) else [wrong.cause] if wrong else []
+        found += [causes.REPORTS_STOP] if is_silent(record, limits) else []
     if "replace" in records and cancels_older(records["replace"], limits) is PASSED:
         verdict = cancels_older(record, limits)
         if isinstance(verdict, Failed) and verdict.kind is Kind.NOT_CANCELLED:

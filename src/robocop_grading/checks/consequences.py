@@ -224,7 +224,6 @@ FOLLOWS = (
     Row(BRIDGE_CHECKS, Kind.NO_GOAL, "bridge_alive"),
     Row(BRIDGE_CHECKS, Kind.NO_REPORT, "bridge_alive"),
     Row("cancels_older waits_for_server goal_frame", None, "forwards_goal", same_kind),
-    Row("goal_frame", None, "cancels_older", same_kind),
     # What a check needs to be reached.
     Row("feedback_position feedback_angle", Kind.NOT_REACHED, "feedback_rate"),
     Row("drives_straight", Kind.NOT_REACHED, "turns_to_goal"),

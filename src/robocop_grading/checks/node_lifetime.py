@@ -69,7 +69,8 @@ def no_exception(record: Record, limits: Limits) -> Verdict:
 def stays_alive(record: Record, limits: Limits) -> Verdict:
     """The node keeps running to the end."""
     for death in record.deaths:
-        return _died("The node died", death, record)
+        own = death.status == 0 and not death.reason
+        return _died("The node ended by itself" if own else "The node died", death, record)
     if record.problem.startswith("the node did not come up"):
         return Failed("a running node", "it did not come up again", 0.0, record.problem)
     return PASSED

@@ -13,7 +13,7 @@ from aro_robocop_goto_as.msg import (
 )
 from geometry_msgs.msg import PoseStamped
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, inverse
+from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose, inverse
 
 from .. import record as rec
 from ..handout import ACTION, CLICK_TOPIC
@@ -151,18 +151,22 @@ class BridgeRun(Run):
 
     # -- scenarios, in this order --
 
+    def _begin(self, name: str) -> None:
+        """Begin where map is not odom, and drive the robot away from odom's origin: a frame taken for another shows."""
+        self.begin(name, SITE)
+        for twist, seconds in ((Twist2D(0.2, 1.0), 1.5), (STANDSTILL, 0.5)):
+            self.stage.command(twist)
+            self.settle(seconds)
+
     def _no_server(self) -> None:
-        """Start the bridge and send it a click while there is no server."""
-        self.begin("no_server")
+        """Start the bridge while there is no server."""
+        self._begin("no_server")
         self.launch()
         self.wait_for(
             lambda: self.topics.node_subscribes_to(CLICK_TOPIC) or self.topics.node_publishes(f"{ACTION}/cancel"),
             START_TIMEOUT,
         )
-        self.settle(1.0)
-        if self.topics.node_subscribes_to(CLICK_TOPIC):
-            self._send_click("odom", 0.5, 0.1)
-        self.settle(3.0)
+        self.settle(4.0)
         self.marks["own_server"] = float(f"{ACTION}/result" in self.topics.published)
         self.finish("no_server")
 
@@ -171,10 +175,10 @@ class BridgeRun(Run):
 
         The first goal is active for longer than `status_span`, so that no report is lost by its phase.
         """
-        self.begin("click")
+        self._begin("click")
         self._serve()
         self.wait_for(self._has_client, CONNECT_TIMEOUT)
-        self.settle(2.0)  # a click that the bridge has kept may come now
+        self.settle(2.0)  # a goal that no click has asked for may come now
         self._finish_goals()
         self.settle(0.5)
         self.marks["clicked"] = self.stage.now
@@ -212,7 +216,7 @@ class BridgeRun(Run):
 
     def _replace(self) -> None:
         """Send a click, and a second click while the first goal is active."""
-        self.begin("replace")
+        self._begin("replace")
         self._send_click("odom", *BEFORE)
         self.settle(2.0)
         self._send_click("odom", *SECOND)
@@ -220,16 +224,12 @@ class BridgeRun(Run):
         self.finish("replace")
 
     def _frame(self) -> None:
-        """Send clicks in other frames, after the robot has moved, where map differs from odom.
+        """Send clicks in other frames.
 
         The first click is newer than the newest transform to odom, as most clicks in RViz are; map -> odom is static.
         """
         self._finish_goals()
-        self.begin("frame", SITE)
-        self.settle(0.5)
-        for twist, seconds in ((Twist2D(0.2, 0.0), 3.0), (Twist2D(0.0, 0.5), 2.0), (Twist2D(), 1.0)):
-            self.stage.command(twist)
-            self.settle(seconds)
+        self._begin("frame")
         self.stage.advance_between_transforms()
         for frame in FRAMES:
             self._send_click(frame, 1.0, 0.2)
@@ -242,8 +242,7 @@ class BridgeRun(Run):
         """Send two clicks whose goals are not accepted yet; for advice, without points."""
         self._finish_goals()
         self.accepts = False
-        self.begin("pending")
-        self.settle(1.0)
+        self._begin("pending")
         self._send_click("odom", *BEFORE)
         self._watch_reports(self.plan.limits.status_period + 2.0)
         self._stop_watching()

@@ -1,11 +1,12 @@
-"""A node's output, line by line, up to a limit. It is read without a thread, by the loop that waits for the node."""
+"""A node's output, line by line. It is read without a thread, by the loop that waits for the node."""
 
 import contextlib
 import fcntl
 import os
+import re
 from typing import IO, Callable
 
-MAX_OUTPUT = 200_000  # bytes of a node's output that are kept; the rest is read and dropped
+MAX_READ = 1_000_000  # bytes that are kept until they are passed on; the rest is read and dropped
 MAX_LINE = 2_000  # bytes; a longer one is several
 PIPE = 1 << 20  # bytes that are read at once; the most that a pipe holds, unless root has raised the limit
 F_SETPIPE_SZ = 1031  # of fcntl(2); Python has it since 3.10
@@ -16,7 +17,6 @@ class Output:
 
     def __init__(self, stream: IO[bytes], on_line: Callable[[str], object]) -> None:
         self._stream, self._on_line = stream, on_line
-        self._size = 0  # bytes so far
         self._text = b""  # read, and not passed on yet
         self.is_open = True
         os.set_blocking(stream.fileno(), False)
@@ -33,14 +33,14 @@ class Output:
         except BlockingIOError:  # nothing
             return
         self.is_open = bool(data)
-        self._text += data[: max(0, MAX_OUTPUT - self._size)]
-        self._size += len(data)
+        self._text += data[: max(0, MAX_READ - len(self._text))]
 
     def pass_on(self) -> None:
-        """Read, and pass on all lines that have been printed; the last one, too, if nothing else will follow."""
+        """Read, and pass on all lines that have been printed; the last one, too, if it overwrites one or is the end."""
         self.read()
-        *lines, self._text = self._text.split(b"\n")
-        if not self.is_open:
+        overwrites = b"\r" in self._text.rpartition(b"\n")[2]
+        *lines, self._text = re.split(rb"[\r\n]", self._text)
+        if overwrites or not self.is_open:
             lines, self._text = [*lines, self._text], b""
         for line in lines:
             for start in range(0, len(line), MAX_LINE):

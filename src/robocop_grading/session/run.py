@@ -24,7 +24,8 @@ from .stage import Stage
 from .topics import NodeTopic
 
 MAX_ENTRIES = 50  # of each kind at one tick
-MAX_LINES = 20_000  # in one record; as many at one tick, as a traceback comes at once
+MAX_PRINTED = 2_000_000  # characters of lines in one record; as many at one tick, as a traceback comes at once
+SHORT = 100  # characters; a shorter line counts as one of this length
 
 
 class Run:
@@ -39,6 +40,7 @@ class Run:
         self._before: DefaultDict[str, int] = defaultdict(int)  # how many of them there were before this tick
         self.marks: Dict[str, float] = {}
         self.death_recorded = False
+        self._printed = 0  # characters of this record's lines
         self._spent = Spent()
         self._started = Pose2D()  # odom_from_footprint when the node was started
         self.topics.subscribe("/cmd_vel", Twist, self._on_command)
@@ -56,7 +58,7 @@ class Run:
         """Start a scenario's record and bag, with the robot at rest at its site."""
         self.entries = defaultdict(list)
         self._before.clear()
-        self.marks = {}
+        self.marks, self._printed = {}, 0
         self.stage.bag.open(self.job.out / f"{self.job.part}-{name}.bag")
         self.stage.command(STANDSTILL)
         self.stage.begin(site, blocks, odd_scan)
@@ -190,6 +192,6 @@ class Run:
         self._on_line(f"[{level}] {message.msg}")
 
     def _on_line(self, text: str) -> None:
-        lines = self.entries["lines"]
-        if len(lines) < MAX_LINES:
-            lines.append(rec.Line(self.stage.now, text))
+        self._printed += max(SHORT, len(text))
+        if self._printed <= MAX_PRINTED:
+            self.entries["lines"].append(rec.Line(self.stage.now, text))

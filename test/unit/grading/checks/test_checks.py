@@ -185,8 +185,10 @@ NORM = (
 def test_reason_of_an_end_is_an_exception_with_its_place_in_the_node_or_a_line_that_is_no_information(
     lines: List[str], reason: str
 ) -> None:
-    verdict = CHECKS["stays_alive"](logged(*lines, deaths=(rec.Death(4.0, int(len(lines) > 1)),)), LIMITS)
-    assert isinstance(verdict, Failed) and verdict.cause == f"The node died: {reason}"
+    status = int(len(lines) > 1)
+    verdict = CHECKS["stays_alive"](logged(*lines, deaths=(rec.Death(4.0, status),)), LIMITS)
+    assert isinstance(verdict, Failed)
+    assert verdict.cause == f"{'The node died' if status else 'The node ended by itself'}: {reason}"
 
 
 STOP = (

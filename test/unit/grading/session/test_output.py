@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from robocop_grading.session.output import MAX_LINE, MAX_OUTPUT, Output
+from robocop_grading.session.output import MAX_LINE, MAX_READ, Output
 
 
 @pytest.fixture
@@ -57,11 +57,21 @@ def test_a_node_that_prints_a_lot_need_not_wait_for_the_grader(printed):
     os.close(writer)
 
 
+def test_a_text_that_overwrites_a_line_is_a_line_without_its_end(printed):
+    writer, output, lines = printed
+    for text in (b"\rstate: ACTIVE", b"\rstate: SUCCEEDED", b"\r\nover\r", b"\nend"):
+        os.write(writer, text)
+        output.pass_on()
+    assert lines == ["state: ACTIVE", "state: SUCCEEDED", "over"]
+    os.close(writer)
+
+
 def test_of_a_flood_the_beginning_is_kept_and_the_rest_is_read(printed):
     writer, output, lines = printed
-    for _ in range(2 * MAX_OUTPUT // 1000):
-        os.write(writer, b"x" * 999 + b"\n")  # blocks for ever if nobody reads
-        output.read()
-    output.pass_on()
-    assert len(lines) == MAX_OUTPUT // 1000
+    for _ in range(2):
+        for _ in range(2 * MAX_READ // 1000):
+            os.write(writer, b"x" * 999 + b"\n")  # blocks for ever if nobody reads
+            output.read()
+        output.pass_on()
+    assert len(lines) == 2 * MAX_READ // 1000
     os.close(writer)
