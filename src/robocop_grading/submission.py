@@ -17,7 +17,6 @@ from robocop_hosting.package import MAX_NAMED, LaunchPlan, Package, find_package
 from robocop_hosting.scripts import (
     BYTE_ORDER_MARK,
     FIRST_LINE,
-    NODE_NAMES,
     NOT_EXECUTABLE,
     PARTS,
     Choice,
@@ -48,7 +47,6 @@ class Script:
 
     part: str  # server or bridge
     path: Path
-    node: str  # name
     arguments: List[str] = field(default_factory=list)
     next_step: str = ""  # in a program that still has TODOs of the skeleton
     variables: Mapping[str, str] = field(default_factory=dict)  # of its environment, from its launch file
@@ -56,7 +54,7 @@ class Script:
 
     def command(self) -> List[str]:
         """The command line, with this interpreter whatever the script's first line says: students' Pythons differ."""
-        return [sys.executable, str(AGENT), CHANNEL, str(self.path), *self.arguments, f"__name:={self.node}"]
+        return [sys.executable, str(AGENT), CHANNEL, str(self.path), *self.arguments]
 
 
 @dataclass(frozen=True)
@@ -153,8 +151,7 @@ def _script(part: str, choice: Choice, top: Path) -> Script:
     return Script(
         part,
         choice.path,
-        NODE_NAMES[part] if node is None else node.name,
-        [] if node is None else node.arguments,
+        [] if node is None else [*node.arguments, f"__name:={node.name}"],  # without a launch file as by rosrun
         f"{todo} in {name}" if todo else "",
         {} if node is None else node.variables,
         shown,

@@ -14,7 +14,7 @@ END_TIMEOUT = 2.0  # [s, wall] for what ended programs have printed; a process t
 COLOUR = re.compile("\x1b[^m]*m")
 FRAME = re.compile(r' +File "(.+)", line (\d+)')
 # By roslaunch, followed by a line about its log file; the second one by this simulator's roslaunch.
-DIED = re.compile(r"\[(\S+)-\d+\] process has died \[pid \d+, exit code (-?\d+), cmd (\S+)")
+DIED = re.compile(r"\[(\S+)-\d+\] process has died \[pid \d+, exit code (-?\d+), cmd (?:bash -c exec \S+ )?(\S+)")
 LOG_FILE = "log file: "
 ENDED = re.compile(r"\[WARN\] \S+ has ended, without an error")
 PARTS = {name: f"your {part}" for part, name in NODE_NAMES.items()}

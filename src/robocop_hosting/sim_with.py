@@ -24,6 +24,7 @@ from .scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, start_problems
 from .workspace import Environment, build, compat_environment, places, run_plain, workspace_name
 
 NOT_FOUND = re.compile(r'(?:configuration file provided by "|Could NOT find )(\w+)')  # by CMake
+AS_ROSRUN = quoteattr('bash -c \'exec "$0"\'')  # without the arguments that roslaunch appends, such as __name:=...
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
 
@@ -128,7 +129,7 @@ def write_launch_file(package: Package, folder: Path, arguments: Dict[str, str],
     else:
         for part, choice in found.choices.items():
             script = f"type={quoteattr(choice.path.name)} name={quoteattr(NODE_NAMES[part])}"
-            parts.append(f'  <node pkg="{package.name}" {script} output="screen"/>')
+            parts.append(f"  <node pkg='{package.name}' {script} launch-prefix={AS_ROSRUN} output='screen'/>")
     path = folder / "run.launch"
     path.write_text("\n".join(["<launch>", *parts, "</launch>", ""]))
     return path

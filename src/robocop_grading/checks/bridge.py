@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 from typing import List, Mapping, Optional, Sequence
 
-from ..handout import Limits
+from ..handout import ACTION, Limits
 from ..record import PREEMPTED, RECALLED, Click, Record, SentGoal
 from . import bridge_causes as causes
 from .bridge_reports import is_silent, wrong_reports, wrong_state_reported
@@ -38,6 +38,8 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
         return Failed(wanted, seen, goal.time, causes.other_position(click, goal), Kind.OTHER_POSITION)
     if len(goals) > 1:
         return Failed("one goal", f"{len(goals)} goals", goals[1].time, "The click is sent more than once")
+    if record.servers and ACTION not in record.servers:
+        return Failed(f"a goal to {ACTION[1:]}", "one to another action", goal.time, causes.unconnected(record))
     return PASSED
 
 

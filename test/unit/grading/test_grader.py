@@ -22,7 +22,7 @@ def graded(outcomes, folder, monkeypatch):
     """The grade of a server whose runs have these outcomes."""
     left = list(outcomes)
     monkeypatch.setattr(Runner, "run", lambda *_: left.pop(0))
-    submission = Submission("anna", (), {}, [Script("server", folder, "node")])
+    submission = Submission("anna", (), {}, [Script("server", folder)])
     return grade(Runner(PLAN, folder), submission, folder / "report")
 
 

@@ -32,7 +32,7 @@ TabError: words
 
 def died(name="aro_robocop_goto_as_node", code=1, script="robocop_goto_as.py"):
     """What roslaunch prints, in colour."""
-    command = f"{COPY}/devel/lib/lab/{script} __name:={name}"
+    command = f'bash -c exec "$0" {COPY}/devel/lib/lab/{script} __name:={name}'
     return f"\x1b[31m[{name}-3] process has died [pid 7, exit code {code}, cmd {command}].\nlog file: /l*.log\x1b[0m\n"
 
 
