@@ -22,8 +22,8 @@ NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that the
 MISSING = "Python's module {} is not installed here{}"
 NAME_IT = "; if the lab has it, name its package in the plan, under packages"
 LAB_MODULES = (
-    "actionlib actionlib_msgs aro_robocop_goto_as geometry_msgs nav_msgs numpy ros_numpy rospy sensor_msgs std_msgs tf "
-    "tf2_geometry_msgs tf2_ros"
+    "actionlib actionlib_msgs angles aro_robocop_goto_as geometry_msgs laser_geometry nav_msgs numpy ros_numpy rospy "
+    "sensor_msgs std_msgs tf tf2_geometry_msgs tf2_ros tf_conversions"
 ).split()
 MISTYPED = 0.75  # similarity to a module of the lab; scipy and rospy have 0.6
 _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
