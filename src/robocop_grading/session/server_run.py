@@ -135,7 +135,8 @@ class ServerRun(Run):
                 elsewhere = result.status == rec.SUCCEEDED and all(
                     goal.errors_at(sample)[0] > self.limits.reached for sample in at_end
                 )
-                if far or elsewhere or rec.status_name(result.status) != goal.ends:
+                state = rec.PREEMPTED if result.status == rec.RECALLED else result.status  # both are right
+                if far or elsewhere or rec.status_name(state) != goal.ends:
                     return True
         return False
 
