@@ -20,6 +20,7 @@ from robocop_hosting.scripts import (
     NOT_EXECUTABLE,
     PARTS,
     Choice,
+    candidates,
     choose,
     files_below,
     interpreter,
@@ -118,7 +119,10 @@ def _folder(top: Path, share: Path, state: Path, builds: Path, sandbox: Optional
         raise HostingError(f"{error}; {SEVERAL}") from error
     if package is None:
         return _loose(choices, top, share, state)
-    return replace(_package(package, share, state, builds, sandbox), name=top.name)
+    submission = _package(package, share, state, builds, sandbox)
+    outside = [it for it in candidates(top) if package.path not in it.path.parents]
+    notes = [f"{it.part}: {it.path.relative_to(top)} is outside of the package, so it is not graded" for it in outside]
+    return replace(submission, name=top.name, notes=[*submission.notes, *notes])
 
 
 def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -> Submission:

@@ -8,7 +8,7 @@ import re
 import tokenize
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Collection, Dict, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple
+from typing import Collection, Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 from aro_robocop_goto_as.names import BRIDGE, SERVER
 
@@ -45,28 +45,16 @@ class Choice:
     others: List[Path]  # except those that it imports
 
 
-class _Doubts(NamedTuple):
-    """What tells against a script as a part's own; the first difference between two scripts counts."""
-
-    is_not_launched: bool  # by the launch file
-    is_aside: bool  # a copy, a backup, a test
-    has_another_name: bool  # than the handout's
-    is_module: bool  # it makes no node
-    is_not_by_content: bool  # its name, or a module that it imports, is the part's
-    may_be_another: bool  # the client of another action
-    is_not_installed: bool  # by catkin_install_python
-    is_not_executable: bool
-    is_elsewhere: bool  # not in scripts/
-
-
 @dataclass(frozen=True)
-class _Candidate:
+class Candidate:
+    """A script that could be a part's."""
+
     part: str
     path: Path
     node: Optional[LaunchNode]
     is_installed: bool
-    doubts: _Doubts
     imports: Set[str]  # names of modules
+    doubts: Tuple[bool, ...]  # what tells against it; the first difference between two scripts counts
 
 
 def part_of(path: Path, top: Path) -> str:
@@ -129,16 +117,15 @@ def choose(
     """The script of each part in `top`.
 
     The script is the one that a launch file's node in `nodes` starts, or the one with the handout's name, or the only
-    one that offers the action or listens to clicks.
+    one that offers the action or listens to clicks; a copy or test only if there is nothing else.
 
     `relays`: programs that the build has made, among them those of catkin_install_python. HostingError if two different
     scripts are equally likely, unless not `expects_one`.
     """
-    installed = set(_relayed(relays))
-    candidates = sorted(_candidates(top, nodes, installed), key=lambda it: (it.doubts, it.path))
+    found = sorted(candidates(top, nodes, relays), key=lambda it: (it.doubts, it.path))
     chosen = {}
     for part in PARTS.values():
-        own = [it for it in candidates if it.part == part]
+        own = [it for it in found if it.part == part]
         if own:
             best = own[0]
             equal = [it for it in own if it.doubts == best.doubts and read_bytes(it.path) != read_bytes(best.path)]
@@ -160,10 +147,10 @@ def _relayed(programs: Collection[Path]) -> Iterator[bytes]:
             yield from (os.path.realpath(found[1]) for found in RELAY.finditer(read_bytes(path)))
 
 
-def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[bytes]) -> Iterator[_Candidate]:
-    launched: Dict[str, LaunchNode] = {}  # by type, the first of each
-    for started in nodes:
-        launched.setdefault(started.type, started)
+def candidates(top: Path, nodes: Sequence[LaunchNode] = (), relays: Collection[Path] = ()) -> Iterator[Candidate]:
+    """The scripts in `top` that could be a part's, as in choose()."""
+    installed = set(_relayed(relays))
+    launched = {started.type: started for started in reversed(nodes)}  # the first of each type
     contents = dict(_programs(top, {*PARTS, *launched}))
     parts = {path: _part_by_content(content) for path, content in contents.items()}
     for path, content in contents.items():
@@ -174,12 +161,10 @@ def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[by
         if not part:
             part, is_sure = _part_by_name(path.name), True
         if part and (is_sure or node is not None):
-            is_aside, *place = doubts_of_place(path, top, "scripts")
+            is_aside, is_module = bool(ASIDE.search(str(path.relative_to(top)))), b"init_node" not in content
+            doubts = node is None, is_aside, path.name not in PARTS, is_module, not is_sure
             is_installed = os.path.realpath(os.fsencode(path)) in installed
-            has_another_name, is_module = path.name not in PARTS, b"init_node" not in content
-            of_content = has_another_name, is_module, not own[0], not is_sure
-            doubts = _Doubts(node is None, is_aside, *of_content, not is_installed, *place)
-            yield _Candidate(part, path, node, is_installed, doubts, imports)
+            yield Candidate(part, path, node, is_installed, imports, doubts)
 
 
 def _programs(top: Path, names: Collection[str]) -> Iterator[Tuple[Path, bytes]]:

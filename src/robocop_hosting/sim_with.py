@@ -24,7 +24,7 @@ from .scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, start_problems
 from .workspace import Environment, build, compat_environment, places, run_plain, workspace_name
 
 NOT_FOUND = re.compile(r'(?:configuration file provided by "|Could NOT find )(\w+)')  # by CMake
-AS_ROSRUN = quoteattr('bash -c \'exec "$0"\'')  # without the arguments that roslaunch appends, such as __name:=...
+AS_ROSRUN = quoteattr("bash -c 'exec \"$0\"'")  # without the arguments that roslaunch appends, such as __name:=...
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
 

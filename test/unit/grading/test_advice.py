@@ -22,7 +22,10 @@ def test_sleeping_on_the_wall_clock_is_named_once_with_its_first_line(begin: str
     assert advice(f"{begin}\nwhile True:\n    {sleep}(0.1)\n    {sleep}(1)") == [f"line 3: {WALL_SLEEP}"]
 
 
-@pytest.mark.parametrize("code", ["signal.alarm(1)", "from signal import alarm; alarm(1)", "from signal import *; setitimer(ITIMER_REAL, 0.1, 0.1)"])
+@pytest.mark.parametrize(
+    "code",
+    ["signal.alarm(1)", "from signal import alarm; alarm(1)", "from signal import *; setitimer(ITIMER_REAL, 0.1, 0.1)"],
+)
 def test_signals_by_the_wall_clock_are_named(code: str) -> None:
     assert advice(code) == [f"line 1: {WALL_ALARM}"]
 
