@@ -33,11 +33,11 @@ def advice(code: str) -> List[str]:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return []
     first: Dict[str, int] = {}
-    nodes = list(ast.walk(tree))
-    froms = [node for node in nodes if isinstance(node, ast.ImportFrom)]
-    imported = {it.asname or it.name: (node.module or "", it.name) for node in froms for it in node.names}
-    for node in nodes:
-        if isinstance(node, ast.Call):
+    imported: Dict[str, Tuple[str, str]] = {}  # module and name of what `from MODULE import NAME` imports
+    for node in ast.walk(tree):  # outermost first, so an import comes before its calls
+        if isinstance(node, ast.ImportFrom):
+            imported.update({it.asname or it.name: (node.module or "", it.name) for it in node.names})
+        elif isinstance(node, ast.Call):
             for text in _about(node, imported):
                 first[text] = min(node.lineno, first.get(text, node.lineno))
     return [f"line {line}: {text}" for text, line in sorted(first.items(), key=lambda entry: entry[1])]

@@ -49,6 +49,9 @@ def test_what_is_launched_comes_first(tmp_path: Path) -> None:
     assert chosen(tmp_path) == (f"scripts/{NAME}", "clicks.py")
     assert chosen(tmp_path, "mine.py") == ("scripts/mine.py", "clicks.py")
     assert chosen(tmp_path, "patrol.py", "clicks.py") == (f"scripts/{NAME}", "clicks.py")
+    (tmp_path / "clicks.py").unlink()
+    assert chosen(tmp_path) == (f"scripts/{NAME}", None)
+    assert chosen(tmp_path, "patrol.py") == (f"scripts/{NAME}", "patrol.py")
 
 
 MAIN = "import rospy, goto_server as it\nrospy.init_node('goto')\nit.Server()\n"
@@ -75,10 +78,9 @@ def test_launched_program_is_the_server_that_it_imports(tmp_path: Path) -> None:
     assert chosen(tmp_path, "run.py") == ("lab/run.py", None)
 
 
-def test_what_the_build_installs_is_known_from_its_relay(tmp_path: Path) -> None:
-    tree(tmp_path, {f"src/{NAME}": "", f"old/{NAME}": "x", "relay": f"python_script = '{tmp_path}/src/{NAME}'\n"})
-    (tmp_path / "compiled").write_bytes(bytes(2_000_000))
-    (found,) = choose(tmp_path, (), [tmp_path / "compiled", tmp_path / "relay"]).values()
+def test_what_the_build_has_made_a_program_of_is_installed(tmp_path: Path) -> None:
+    tree(tmp_path, {f"src/{NAME}": "", f"old/{NAME}": "x"})
+    (found,) = choose(tmp_path, (), [tmp_path.parent / NAME]).values()
     assert (found.path, found.is_installed, found.others) == (
         tmp_path / "src" / NAME,
         True,
