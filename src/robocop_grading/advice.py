@@ -2,7 +2,7 @@
 
 import ast
 import re
-from typing import Dict, Iterator, List
+from typing import Dict, Iterator, List, Mapping, Tuple
 
 AUTO_START = (
     "SimpleActionServer starts before the constructor has finished, so a goal may find attributes missing: pass "
@@ -33,17 +33,20 @@ def advice(code: str) -> List[str]:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return []
     first: Dict[str, int] = {}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Call):
-            for text in _about(node):
+    imported: Dict[str, Tuple[str, str]] = {}  # module and name of what `from MODULE import NAME` imports
+    for node in ast.walk(tree):  # outermost first, so an import comes before its calls
+        if isinstance(node, ast.ImportFrom):
+            imported.update({it.asname or it.name: (node.module or "", it.name) for it in node.names})
+        elif isinstance(node, ast.Call):
+            for text in _about(node, imported):
                 first[text] = min(node.lineno, first.get(text, node.lineno))
     return [f"line {line}: {text}" for text, line in sorted(first.items(), key=lambda entry: entry[1])]
 
 
-def _about(call: ast.Call) -> Iterator[str]:
+def _about(call: ast.Call, imported: Mapping[str, Tuple[str, str]]) -> Iterator[str]:
     of, name = "", ""
     if isinstance(call.func, ast.Name):
-        name = call.func.id
+        of, name = imported.get(call.func.id, ("", call.func.id))
     elif isinstance(call.func, ast.Attribute):
         of, name = call.func.value.id if isinstance(call.func.value, ast.Name) else "", call.func.attr
     if name == "SimpleActionServer":

@@ -20,10 +20,11 @@ from .submission import Script, Submission
 KILLED = " by a SIGKILL that did not come from the grader"
 NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that they need"
 MISSING = "Python's module {} is not installed here{}"
+BESIDE = "{0}.py lies beside {1}, but only {1} was given: grade the folder"
 NAME_IT = "; if the lab has it, name its package in the plan, under packages"
 LAB_MODULES = (
-    "actionlib actionlib_msgs aro_robocop_goto_as geometry_msgs nav_msgs numpy ros_numpy rospy sensor_msgs std_msgs tf "
-    "tf2_geometry_msgs tf2_ros"
+    "actionlib actionlib_msgs angles aro_robocop_goto_as geometry_msgs laser_geometry nav_msgs numpy ros_numpy rospy "
+    "sensor_msgs std_msgs tf tf2_geometry_msgs tf2_ros tf_conversions"
 ).split()
 MISTYPED = 0.75  # similarity to a module of the lab; scipy and rospy have 0.6
 _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
@@ -46,7 +47,8 @@ def grade(
         for script in (script for script in submission.scripts if plan.examines(script.part)):
             recorded = _run(runner, submission, script, Path(work, script.part), notes)
             records[script.part], problems[script.part] = recorded.records, recorded.problem
-            notes += [f"{script.part}: {it}" for it in (*recorded.told, *_missing_modules(recorded.records))]
+            said = *recorded.told, *_missing_modules(recorded.records, script.path)
+            notes += [f"{script.part}: {it}" for it in said]
         judged = completed(judge.judge(submission.name, plan, records, problems), plan)
         told = dict.fromkeys([*judged.notes, *notes, *(submission.notes if plan.is_whole else ())])
         judged = replace(judged, files=tuple(submission.files), notes=tuple(told))
@@ -58,10 +60,15 @@ def grade(
     return judged
 
 
-def _missing_modules(records: Mapping[str, Record]) -> List[str]:
+def _missing_modules(records: Mapping[str, Record], script: Path) -> List[str]:
     lines = [line.text for record in records.values() for line in record.lines]
     names = sorted({name for line in lines for name in _NO_MODULE.findall(line)})
-    return [MISSING.format(it, did_you_mean(it, LAB_MODULES, similarity=MISTYPED) or NAME_IT) for it in names]
+    return [
+        BESIDE.format(it, script.name)
+        if (script.parent / f"{it}.py").exists()
+        else MISSING.format(it, did_you_mean(it, LAB_MODULES, similarity=MISTYPED) or NAME_IT)
+        for it in names
+    ]
 
 
 def _run(runner: Runner, submission: Submission, script: Script, out: Path, notes: List[str]) -> Recorded:

@@ -17,10 +17,10 @@ from robocop_hosting.package import MAX_NAMED, LaunchPlan, Package, find_package
 from robocop_hosting.scripts import (
     BYTE_ORDER_MARK,
     FIRST_LINE,
-    NODE_NAMES,
     NOT_EXECUTABLE,
     PARTS,
     Choice,
+    candidates,
     choose,
     files_below,
     interpreter,
@@ -48,7 +48,6 @@ class Script:
 
     part: str  # server or bridge
     path: Path
-    node: str  # name
     arguments: List[str] = field(default_factory=list)
     next_step: str = ""  # in a program that still has TODOs of the skeleton
     variables: Mapping[str, str] = field(default_factory=dict)  # of its environment, from its launch file
@@ -56,7 +55,7 @@ class Script:
 
     def command(self) -> List[str]:
         """The command line, with this interpreter whatever the script's first line says: students' Pythons differ."""
-        return [sys.executable, str(AGENT), CHANNEL, str(self.path), *self.arguments, f"__name:={self.node}"]
+        return [sys.executable, str(AGENT), CHANNEL, str(self.path), *self.arguments]
 
 
 @dataclass(frozen=True)
@@ -120,7 +119,10 @@ def _folder(top: Path, share: Path, state: Path, builds: Path, sandbox: Optional
         raise HostingError(f"{error}; {SEVERAL}") from error
     if package is None:
         return _loose(choices, top, share, state)
-    return replace(_package(package, share, state, builds, sandbox), name=top.name)
+    submission = _package(package, share, state, builds, sandbox)
+    outside = [it for it in candidates(top) if package.path not in it.path.parents]
+    notes = [f"{it.part}: {it.path.relative_to(top)} is outside of the package, so it is not graded" for it in outside]
+    return replace(submission, name=top.name, notes=[*submission.notes, *notes])
 
 
 def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -> Submission:
@@ -153,8 +155,7 @@ def _script(part: str, choice: Choice, top: Path) -> Script:
     return Script(
         part,
         choice.path,
-        NODE_NAMES[part] if node is None else node.name,
-        [] if node is None else node.arguments,
+        [] if node is None else [*node.arguments, f"__name:={node.name}"],  # without a launch file as by rosrun
         f"{todo} in {name}" if todo else "",
         {} if node is None else node.variables,
         shown,

@@ -32,7 +32,6 @@ NOT_EXECUTABLE = "is not executable"
 BYTE_ORDER_MARK = "begins with a byte-order mark"
 MAX_LINES = 20  # from a script's top in which a #! line is looked for
 IMPORT = re.compile(rb"^[ \t]*(?:from|import)[ \t]+([\w., \t]+)", re.M)
-RELAY = re.compile(rb"^python_script = '([^'\n]+)'$", re.M)  # in what catkin_install_python makes
 
 
 @dataclass(frozen=True)
@@ -41,71 +40,51 @@ class Choice:
 
     path: Path
     node: Optional[LaunchNode]
-    is_installed: bool  # by catkin_install_python: roslaunch starts it whatever its mode and its first line are
+    is_installed: bool  # under its name, by catkin_install_python: roslaunch starts it whatever its mode and first line
     others: List[Path]  # except those that it imports
 
 
-class _Doubts(NamedTuple):
-    """What tells against a script as a part's own; the first difference between two scripts counts."""
+class Candidate(NamedTuple):
+    """A script that could be a part's; the likeliest is the smallest."""
 
-    is_not_launched: bool  # by the launch file
-    is_aside: bool  # a copy, a backup, a test
-    has_another_name: bool  # than the handout's
-    is_module: bool  # it makes no node
-    is_not_by_content: bool  # its name, or a module that it imports, is the part's
-    may_be_another: bool  # the client of another action
-    is_not_installed: bool  # by catkin_install_python
-    is_not_executable: bool
-    is_elsewhere: bool  # not in scripts/
-
-
-@dataclass(frozen=True)
-class _Candidate:
-    part: str
+    doubts: Tuple[bool, ...]  # what tells against it; the first difference between two scripts counts
     path: Path
+    part: str
     node: Optional[LaunchNode]
-    is_installed: bool
-    doubts: _Doubts
-    imports: Set[str]  # names of modules
 
 
 def part_of(path: Path, top: Path) -> str:
-    """ "server", "bridge", or "" for a file in `top` that is neither."""
-    return PARTS.get(path.name) or _part_by_content(read_bytes(path, top))[0] or _part_by_name(path.name)
+    """ "server", "bridge", or "" for a file in `top` that is neither; any action client is a bridge here."""
+    return PARTS.get(path.name) or _part_by_words(_words(read_bytes(path, top)), CLIENTS) or _part_by_name(path.name)
 
 
 def _part_by_name(name: str) -> str:
-    """The part of which a script has the name with something added, as in robocop_goto_as_final.py, or ""."""
+    """The part whose script has this name, or one with something added, as in robocop_goto_as_final.py, or ""."""
     return next((part for it, part in PARTS.items() if name.startswith(it[: -len(".py")]) and name.endswith(".py")), "")
 
 
-def _part_by_content(content: bytes) -> Tuple[str, bool]:
-    """The part of a program by its names and strings, or "", and whether this is certain.
-
-    It is uncertain for a program that may be the client of another action.
-    """
-    if not any(hint in content for hint in HINTS):
-        return "", False
-    words = _names_in(content.decode(errors="replace"))
+def _part_by_words(words: Set[str], of_bridge: Collection[str] = ()) -> str:
+    """The part of a program with these names and strings, or ""; `of_bridge`: words that only a bridge has."""
     has_clicks = any(CLICK_WORD in word for word in words)
     if words & SERVERS or (words >= RAW and not has_clicks and not words & CLIENTS):
-        return "server", True
-    return ("bridge", has_clicks) if has_clicks or words & CLIENTS else ("", False)
+        return "server"
+    return "bridge" if has_clicks or words.intersection(of_bridge) else ""
+
+
+def _words(content: bytes) -> Set[str]:
+    """Names and strings of a program that may be a part, without its comments; up to the first syntax error."""
+    names: Set[str] = set()
+    if any(hint in content for hint in HINTS):
+        with contextlib.suppress(tokenize.TokenError, SyntaxError):
+            for token in tokenize.generate_tokens(io.StringIO(content.decode(errors="replace")).readline):
+                if token.type in (tokenize.NAME, tokenize.STRING):
+                    names.add(token.string)
+    return names
 
 
 def listens_to_clicks(path: Path) -> bool:
     """Return whether a program names the topic of 2D Nav Goals."""
-    return any(CLICK_WORD in word for word in _names_in(read_bytes(path).decode(errors="replace")))
-
-
-def _names_in(code: str) -> Set[str]:
-    """Names and strings of a program, without its comments; up to the first syntax error, if there is one."""
-    names: Set[str] = set()
-    with contextlib.suppress(tokenize.TokenError, SyntaxError):
-        for token in tokenize.generate_tokens(io.StringIO(code).readline):
-            if token.type in (tokenize.NAME, tokenize.STRING):
-                names.add(token.string)
-    return names
+    return any(CLICK_WORD in word for word in _words(read_bytes(path)))
 
 
 def files_below(top: Path) -> List[Path]:
@@ -129,16 +108,14 @@ def choose(
     """The script of each part in `top`.
 
     The script is the one that a launch file's node in `nodes` starts, or the one with the handout's name, or the only
-    one that offers the action or listens to clicks.
+    one that offers the action or listens to clicks; a copy or test only if there is nothing else.
 
     `relays`: programs that the build has made, among them those of catkin_install_python. HostingError if two different
     scripts are equally likely, unless not `expects_one`.
     """
-    installed = set(_relayed(relays))
-    candidates = sorted(_candidates(top, nodes, installed), key=lambda it: (it.doubts, it.path))
-    chosen = {}
+    found, chosen = sorted(candidates(top, nodes)), {}
     for part in PARTS.values():
-        own = [it for it in candidates if it.part == part]
+        own = [it for it in found if it.part == part]
         if own:
             best = own[0]
             equal = [it for it in own if it.doubts == best.doubts and read_bytes(it.path) != read_bytes(best.path)]
@@ -148,38 +125,30 @@ def choose(
                     f"{names}: each of them could be the {part}, and nothing says which one is started: "
                     "name one in the launch file, or remove the other"
                 )
-            others = [it.path for it in own[1:] if it.path.stem not in best.imports]
-            chosen[part] = Choice(best.path, best.node, best.is_installed, others)
+            imports, is_installed = _imports(read_bytes(best.path)), best.path.name in {it.name for it in relays}
+            others = [it.path for it in own[1:] if it.path.stem not in imports]
+            chosen[part] = Choice(best.path, best.node, is_installed, others)
     return chosen
 
 
-def _relayed(programs: Collection[Path]) -> Iterator[bytes]:
-    """The scripts that programs made by catkin_install_python start; other programs may be of any kind and size."""
-    for path in programs:
-        with contextlib.suppress(HostingError):
-            yield from (os.path.realpath(found[1]) for found in RELAY.finditer(read_bytes(path)))
-
-
-def _candidates(top: Path, nodes: Sequence[LaunchNode], installed: Collection[bytes]) -> Iterator[_Candidate]:
-    launched: Dict[str, LaunchNode] = {}  # by type, the first of each
-    for started in nodes:
-        launched.setdefault(started.type, started)
+def candidates(top: Path, nodes: Sequence[LaunchNode] = ()) -> Iterator[Candidate]:
+    """The scripts in `top` that could be a part's, as in choose()."""
+    launched = {started.type: started for started in reversed(nodes)}  # the first of each type
     contents = dict(_programs(top, {*PARTS, *launched}))
-    parts = {path: _part_by_content(content) for path, content in contents.items()}
+    words = {path: _words(content) for path, content in contents.items()}
+    parts = {path: _part_by_words(it) for path, it in words.items()}  # a client may be that of another action
     for path, content in contents.items():
         node, imports = launched.get(path.name), _imports(content)
-        modules = [found for other, found in parts.items() if found[0] and other != path and other.stem in imports]
-        own = (PARTS[path.name], True) if path.name in PARTS else parts[path]
-        part, is_sure = own if own[0] else max(modules, default=own)
-        if not part:
-            part, is_sure = _part_by_name(path.name), True
-        if part and (is_sure or node is not None):
-            is_aside, *place = doubts_of_place(path, top, "scripts")
-            is_installed = os.path.realpath(os.fsencode(path)) in installed
-            has_another_name, is_module = path.name not in PARTS, b"init_node" not in content
-            of_content = has_another_name, is_module, not own[0], not is_sure
-            doubts = _Doubts(node is None, is_aside, *of_content, not is_installed, *place)
-            yield _Candidate(part, path, node, is_installed, doubts, imports)
+        modules = [part for other, part in parts.items() if other != path and other.stem in imports]
+        part = PARTS.get(path.name) or parts[path] or max(modules, default="")
+        if not part and words[path] & CLIENTS:
+            part = "bridge" if node else ""
+        elif not part:
+            part = _part_by_name(path.name)
+        if part:
+            is_aside = bool(ASIDE.search(str(path.relative_to(top))))
+            doubts = node is None, is_aside, path.name not in PARTS, b"init_node" not in content, not parts[path]
+            yield Candidate(doubts, path, part, node)
 
 
 def _programs(top: Path, names: Collection[str]) -> Iterator[Tuple[Path, bytes]]:

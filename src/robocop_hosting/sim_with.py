@@ -27,6 +27,7 @@ ABOUT_LACKING = (
     "What is not found has to be installed, or to lie in the same workspace. Gazebo is not here, this simulator takes "
     "its place. --launch NAME starts another launch file; a file CATKIN_IGNORE in a package's folder leaves it out."
 )
+AS_ROSRUN = quoteattr("bash -c 'exec \"$0\"'")  # without the arguments that roslaunch appends, such as __name:=...
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
 
@@ -93,7 +94,7 @@ def write_launch_file(package: Package, folder: Path, arguments: Dict[str, str],
     else:
         for part, choice in found.choices.items():
             script = f"type={quoteattr(choice.path.name)} name={quoteattr(NODE_NAMES[part])}"
-            parts.append(f'  <node pkg="{package.name}" {script} output="screen"/>')
+            parts.append(f"  <node pkg='{package.name}' {script} launch-prefix={AS_ROSRUN} output='screen'/>")
     path = folder / "run.launch"
     path.write_text("\n".join(["<launch>", *parts, "</launch>", ""]))
     return path

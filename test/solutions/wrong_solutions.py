@@ -73,6 +73,7 @@ WRONG: Tuple[Wrong, ...] = (
         "action_server",
         "robovop_goto_as; the handout says robocop_goto_as",
         ("'robocop_goto_as', GoTo", "'robovop_goto_as', GoTo"),
+        alone=True,
     ),
     _server("never_started", "action_server", "not started", ("        self.server.start()\n", "")),
     _server(
@@ -333,6 +334,13 @@ WRONG: Tuple[Wrong, ...] = (
     ),
     _bridge(
         "bridge_other_topic", "forwards_goal", "does not subscribe", ("'/move_base_simple/goal'", "'/move_base/goal'")
+    ),
+    _bridge(
+        "bridge_misspelt_name",
+        "forwards_goal",
+        "looks for robovop_goto_as; the handout says robocop_goto_as",
+        ("'robocop_goto_as', GoTo", "'robovop_goto_as', GoTo"),
+        alone=True,
     ),
     _bridge("bridge_never_sends", "forwards_goal", "No goal was sent", ("self.client.send_goal(goal)", "pass")),
     _bridge("bridge_logs_debug", "reports_status", "Too little is logged", ("rospy.loginfo(", "rospy.logdebug(")),

@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 from typing import List, Mapping, Optional, Sequence
 
-from ..handout import Limits
+from ..handout import ACTION, Limits
 from ..record import PREEMPTED, RECALLED, Click, Record, SentGoal
 from . import bridge_causes as causes
 from .bridge_reports import is_silent, wrong_reports
@@ -57,6 +57,9 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
         if goal.time < record.clicks[0].time - 1e-6:
             seen = f"a goal at x {goal.x:.2f} y {goal.y:.2f}"
             return Failed("no goal before the first click", seen, goal.time, causes.UNASKED_GOAL)
+    if record.servers and ACTION not in record.servers:
+        time = record.goals[0].time
+        return Failed(f"a goal to {ACTION[1:]}", "one to another action", time, causes.unconnected(record))
     return PASSED
 
 

@@ -29,8 +29,8 @@ def end_of(record: Record, failure: Failed) -> float:
 
 
 def starting(record: Record, _failure: Failed, _earlier: Failed) -> bool:
-    """Return whether the node failed when it started."""
-    return record.name == "start"
+    """Return whether the node failed when it started, so that no action server came up."""
+    return record.name == "start" and not record.up
 
 
 def not_killed(record: Record, _failure: Failed, _earlier: Failed) -> bool:
@@ -177,7 +177,6 @@ BRIDGE_CHECKS = "forwards_goal reports_status cancels_older waits_for_server goa
 # A failure, or a check that is not reached, follows from the first row that applies to it.
 FOLLOWS = (
     # The node does not start, raises an exception, or dies.
-    Row("", Kind.NOT_REACHED, "action_server"),
     Row("no_exception stays_alive", None, "action_server", starting),
     Row("stays_alive", None, "no_exception", not_killed),
     Row("next_goal", Kind.NO_ANSWER, "stays_alive"),
@@ -237,4 +236,5 @@ FOLLOWS = (
     Row(GOAL_CHECKS, Kind.NOT_REACHED, "stays_alive"),
     Row(BRIDGE_CHECKS, Kind.NOT_REACHED, "bridge_alive"),
     Row(BRIDGE_CHECKS, Kind.NOT_REACHED, "forwards_goal"),
+    Row("", Kind.NOT_REACHED, "action_server"),  # the last one: a server of another name is judged as well
 )

@@ -24,12 +24,15 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     """The node provides an action server robocop_goto_as of the handout's type."""
     if record.name != "start":
         return NotReached("this is checked when the node starts")
+    if record.deaths and not record.up:
+        return _died("The node ended while starting", record.deaths[0], record)
+    name, servers = ACTION[1:], [server.lstrip("/") for server in record.servers]
+    if servers and name not in servers:
+        found = " and ".join(servers)
+        return Failed(name, found, 0.0, f"The action server is called {found}; the handout says {name}")
     if record.up:
         return PASSED
-    for death in record.deaths:
-        return _died("The node ended while starting", death, record)
-    name = ACTION[1:]
-    if ACTION in record.servers:
+    if servers:
         kind = record.types[record.servers.index(ACTION)]
         if kind != ACTION_TYPE:
             return Failed(ACTION_TYPE, kind, 0.0, other_action(kind))
@@ -38,10 +41,6 @@ def action_server(record: Record, limits: Limits) -> Verdict:
             "(auto_start=False needs server.start())"
         )
         return Failed("a server that clients can connect to", "no connection", 0.0, cause)
-    servers = [server.lstrip("/") for server in record.servers]
-    if servers:
-        close = closest(name, servers) or servers[0]
-        return Failed(name, close, 0.0, f"The action server is called {close}; the handout says {name}")
     cause = "No action server was created, or it was not started (server.start())"
     if isinstance(no_exception(record, limits), Failed):
         cause = f"An exception while starting: {last_error(record)}"

@@ -36,6 +36,8 @@ INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins 
 UNKNOWN_TYPE = re.compile("Type .{1,100} if not loaded or supported")  # in tf2's words
 NOT_IMPORTED = "tf2 can transform messages of geometry_msgs only after: import tf2_geometry_msgs"
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
+ROS_ARGUMENT = re.compile("unrecognized arguments: .*:=")  # in argparse's words
+MYARGV = "roslaunch adds such arguments for rospy: parse rospy.myargv()[1:], which leaves them out"
 JUST_BEFORE = 1.0  # [s] before a goal's end, in which an exception can be its cause
 DELAY = 0.25  # [s] after which a line has been read
 TRACEBACK = 40  # lines: longer ones are cut
@@ -92,6 +94,8 @@ def last_error(record: Record, until: float = math.inf) -> str:
     others = [line for line in lines if not INFORMATION.match(line)]
     if not others:
         return "its output names no error"
+    if ROS_ARGUMENT.search(others[-1]):
+        return sentences(others[-1][:200], MYARGV)
     return others[-1][:200] if PROBLEM.match(others[-1]) else f"it had printed: {others[-1][:200]}"
 
 

@@ -99,7 +99,7 @@ class Run:
             if name.endswith(suffix) and topic.type.endswith(kind)
         }
         return {
-            "servers": tuple(name[: -len(suffix)] for name in found),
+            "servers": tuple(self.topics.node_name(name)[: -len(suffix)] for name in found),
             # GoToPositionActionResult -> GoToPositionAction
             "types": tuple(topic.type[: -len(suffix[1:])] for topic in found.values()),
             "unpublished": tuple(self.topics.unpublished()),

@@ -23,7 +23,7 @@ from .scenario_bag import MARKERS
 from .stage import Stage
 
 START_TIMEOUT = 20.0  # [s] for the node to come up: it publishes /rosout
-SERVER_TIMEOUT = 5.0  # [s] for its action server to connect, counted from then on
+SERVER_TIMEOUT = 30.0  # [s] for its action server to connect, counted from then on: it may wait for Gazebo
 WARM_UP = 0.5  # [s] of each scenario: new odometry and scans reach the node
 START_PUSH = Twist2D(0.3, 0.4)  # [m/s], [rad/s] before the node starts
 START_PUSH_TIME = 1.5  # [s]
@@ -136,7 +136,8 @@ class ServerRun(Run):
                 elsewhere = result.status == rec.SUCCEEDED and all(
                     goal.errors_at(sample)[0] > self.limits.reached for sample in at_end
                 )
-                if far or elsewhere or rec.status_name(result.status) != goal.ends:
+                state = rec.PREEMPTED if result.status == rec.RECALLED else result.status  # both are right
+                if far or elsewhere or rec.status_name(state) != goal.ends:
                     return True
         return False
 

@@ -2,6 +2,8 @@
 
 Messages are as on TCPROS, each with its length. If the node could not serialize a message, the stream has rubbish
 after it.
+
+An action of the handout's type that the node has under another name, as its only one, has the handout's name here.
 """
 
 import io
@@ -12,9 +14,12 @@ from typing import Any, Callable, Dict, Iterator, List, Mapping, NamedTuple, Set
 
 import genpy
 
+from aro_robocop_goto_as.names import ACTION_TYPE
+
 from .. import record as rec
 from ..agent import wire
 from ..errors import GraderLostError
+from ..handout import ACTION
 
 NAME = "/robocop_sim"  # of the grader's node
 MAX_WAITING, MAX_DECODED = 20_000, 16 * 1024**2  # messages, and their bytes, in one turn; further ones are dropped
@@ -90,6 +95,11 @@ def header(kind: Any, **more: str) -> Dict[str, str]:
     return {"callerid": NAME, "type": kind._type, "md5sum": kind._md5sum, **text, **more}
 
 
+def _renamed(topic: str, action: str, other: str) -> str:
+    """A topic's name; that of an action's topic has another action's name in it."""
+    return other + topic[len(action) :] if topic.startswith(f"{action}/") else topic
+
+
 class Topics:
     """All topics. Messages that have arrived are handled in the order of their topics' names, not of sending."""
 
@@ -98,6 +108,7 @@ class Topics:
         self.subscribed: Dict[str, NodeTopic] = {}  # likewise
         self.programs: Set[str] = set()  # of ROS that the node has started, which find no master
         self.delays: Dict[str, float] = {}  # [s] by topic: the longest time until the node read a message
+        self._action = ACTION  # the node's name for it
         self._sent: Dict[str, _Sent] = {}  # by name
         self._heard: Dict[str, _Heard] = {}  # likewise
         self._outgoing: List[wire.Message] = []
@@ -171,7 +182,7 @@ class Topics:
     def begin(self) -> List[Dict[str, str]]:
         """Forget the previous node, because a new one is started; return the headers of all topics."""
         self.published, self.subscribed, self.programs, self._new = {}, {}, set(), []
-        self.delays = {}
+        self.delays, self._action = {}, ACTION
         for heard in self._heard.values():
             heard.stream.clear()
         self._outgoing = [(name, sent.last) for name, sent in self._sent.items() if sent.last]
@@ -181,7 +192,26 @@ class Topics:
         """The headers of new topics, and the messages, since the last time."""
         new, outgoing = self._new, self._outgoing
         self._new, self._outgoing = [], []
-        return new, outgoing
+        new = [{**it, "topic": self.node_name(it["topic"])} for it in new]
+        return new, [(self.node_name(name), data) for name, data in outgoing]
+
+    def node_name(self, name: str) -> str:
+        """The node's name for a topic."""
+        return _renamed(name, ACTION, self._action)
+
+    def _find_action(self) -> None:
+        """Find the node's action; what the grader has of it is offered under the node's name for it."""
+        topics = {**self.published, **self.subscribed}
+        goals = [name for name, it in topics.items() if name.endswith("/goal") and it.type == f"{ACTION_TYPE}Goal"]
+        action = goals[0][: -len("/goal")] if len(goals) == 1 else ACTION
+        if action != self._action:
+            self._action = action
+            ours: Dict[str, _Topic] = {**self._heard, **self._sent}
+            self._new += [topic.header for name, topic in ours.items() if name.startswith(f"{ACTION}/")]
+        self.published, self.subscribed = (
+            {_renamed(name, action, ACTION): topic for name, topic in those.items()}
+            for those in (self.published, self.subscribed)
+        )
 
     def update_node_topics(self, body: bytes) -> None:
         """Take the node's list of its topics; GraderLostError if the list can't be read."""
@@ -198,9 +228,11 @@ class Topics:
             self.delays = {str(name)[:MAX_NAME]: float(str(delay)[:9]) for name, delay in told["delays"][:MAX_TOPICS]}
         except (KeyError, RecursionError, TypeError, ValueError) as error:
             raise GraderLostError("the node's topics can't be read") from error
+        self._find_action()
 
     def receive(self, name: str, data: bytes) -> None:
         """Take a part of the stream of the node's messages on a topic."""
+        name = _renamed(name, self._action, ACTION)
         heard = self._heard.get(name)
         if heard is None:
             return

@@ -17,11 +17,15 @@ def test_server_that_starts_inside_its_constructor_is_named(code: str) -> None:
     assert advice(code) == [f"line 1: {AUTO_START}"]
 
 
-def test_sleeping_on_the_wall_clock_is_named_once_with_its_first_line() -> None:
-    assert advice("import time\nwhile True:\n    time.sleep(0.1)\n    time.sleep(1)") == [f"line 3: {WALL_SLEEP}"]
+@pytest.mark.parametrize("begin, sleep", [("import time", "time.sleep"), ("from time import sleep as s", "s")])
+def test_sleeping_on_the_wall_clock_is_named_once_with_its_first_line(begin: str, sleep: str) -> None:
+    assert advice(f"{begin}\nwhile True:\n    {sleep}(0.1)\n    {sleep}(1)") == [f"line 3: {WALL_SLEEP}"]
 
 
-@pytest.mark.parametrize("code", ["signal.alarm(1)", "from signal import *; setitimer(ITIMER_REAL, 0.1, 0.1)"])
+@pytest.mark.parametrize(
+    "code",
+    ["signal.alarm(1)", "from signal import alarm; alarm(1)", "from signal import *; setitimer(ITIMER_REAL, 0.1, 0.1)"],
+)
 def test_signals_by_the_wall_clock_are_named(code: str) -> None:
     assert advice(code) == [f"line 1: {WALL_ALARM}"]
 
@@ -34,6 +38,7 @@ def test_signals_by_the_wall_clock_are_named(code: str) -> None:
         "SimpleActionServer('a', A, **options)",
         "SimpleActionServer('a', A, f, auto_start=START)",
         "rospy.sleep(0.1); rate.sleep()",
+        "from rospy import sleep; sleep(0.1)",
         "# time.sleep(1)",
         "print 'Python 2'; time.sleep(1)",
         "time.sleep(1)\0",

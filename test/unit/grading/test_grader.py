@@ -22,7 +22,7 @@ def graded(outcomes, folder, monkeypatch):
     """The grade of a server whose runs have these outcomes."""
     left = list(outcomes)
     monkeypatch.setattr(Runner, "run", lambda *_: left.pop(0))
-    submission = Submission("anna", (), {}, [Script("server", folder, "node")])
+    submission = Submission("anna", (), {}, [Script("server", folder / "solution.py")])
     return grade(Runner(PLAN, folder), submission, folder / "report")
 
 
@@ -92,14 +92,20 @@ def test_bags_are_kept_of_scenarios_in_which_a_check_failed_unless_all_are_asked
 @pytest.mark.parametrize(
     "module, words",
     [
-        ("scipy", "; if the lab has it, name its package in the plan, under packages"),
-        ("ropsy", "; did you mean rospy?"),
+        (
+            "scipy",
+            "Python's module scipy is not installed here; if the lab has it, name its package in the plan, under "
+            "packages",
+        ),
+        ("ropsy", "Python's module ropsy is not installed here; did you mean rospy?"),
+        ("mine", "mine.py lies beside solution.py, but only solution.py was given: grade the folder"),
     ],
 )
-def test_module_that_is_not_installed_is_named_as_mistyped_or_as_one_that_the_lab_may_have(
+def test_module_that_is_not_installed_is_named_as_mistyped_as_one_of_the_lab_or_as_left_behind(
     module, words, tmp_path, monkeypatch
 ):
+    (tmp_path / "mine.py").touch()
     lines = ["Traceback (most recent call last):", f"ModuleNotFoundError: No module named '{module}'"]
     record = Record("start", "server", up=False, lines=tuple(Line(0.0, line) for line in lines))
     (problem,) = graded([Recorded({"start": record})], tmp_path, monkeypatch).notes
-    assert problem == f"server: Python's module {module} is not installed here{words}"
+    assert problem == f"server: {words}"

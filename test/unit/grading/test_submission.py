@@ -9,6 +9,7 @@ from robocop_grading import submission
 from robocop_grading.errors import GradingError
 from robocop_hosting.errors import HostingError
 
+NAME = "robocop_goto_as.py"
 SERVER = "import rospy\nrospy.init_node('lab')\nactionlib.SimpleActionServer('robocop_goto_as')\n"
 
 
@@ -24,6 +25,23 @@ def test_second_version_of_a_script_is_named_as_not_graded(
     for name, code in (("robocop_goto_as.py", SERVER), ("robocop_goto_as_final.py", other), ("tools.py", "")):
         (tmp_path / name).write_text(code)
     assert "server: robocop_goto_as.py is graded, but not robocop_goto_as_final.py" in prepared(tmp_path).notes
+
+
+def test_script_of_a_single_file_or_without_a_launch_file_gets_no_arguments_of_roslaunch(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
+    (tmp_path / "robocop_goto_as.py").write_text(SERVER)
+    (script,) = prepared(tmp_path).scripts
+    assert script.command()[-1] == str(tmp_path / "robocop_goto_as.py")
+
+
+def test_script_outside_of_the_package_is_named_as_not_graded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    files = {"lab/package.xml": "<package><name>lab</name></package>", f"lab/{NAME}": SERVER, NAME: f"{SERVER}# done\n"}
+    tree(tmp_path, files)
+    empty = submission.Submission("lab", (), {}, [])
+    monkeypatch.setattr(submission, "_package", lambda *_: empty)
+    assert prepared(tmp_path).notes == [f"server: {NAME} is outside of the package, so it is not graded"]
 
 
 @pytest.mark.parametrize("launch, reason", [(False, "nothing to start"), (True, "Could not find roscpp")])

@@ -31,7 +31,6 @@ def chosen(top: Path, *started: str) -> Tuple[Optional[str], Optional[str]]:
         ({f"backup/{NAME}": "", f"scripts/{NAME}": ""}, f"scripts/{NAME}"),
         ({f"nodes/{NAME}": "", f"zz old/{NAME}": "x"}, f"nodes/{NAME}"),
         ({f".ipynb_checkpoints/{NAME}": "x", f"__MACOSX/{NAME}": "x", f"z/{NAME}": ""}, f"z/{NAME}"),
-        ({f"a/{NAME}": "x", f"scripts/{NAME}": ""}, f"scripts/{NAME}"),
         ({f"backup/{NAME}": "x", "scripts/server.py": SERVER}, "scripts/server.py"),
         ({"goto.py": RAW, "test_client.py": CLIENT}, "goto.py"),
         ({"robocop_goto_as (1).py": SERVER}, "robocop_goto_as (1).py"),
@@ -45,14 +44,14 @@ def test_server_is_the_script_of_its_name_or_the_only_one_that_offers_the_action
     assert chosen(tree(tmp_path, files)) == (expected, None)
 
 
-def test_what_is_launched_comes_first_then_what_is_executable(tmp_path: Path) -> None:
+def test_what_is_launched_comes_first(tmp_path: Path) -> None:
     tree(tmp_path, {f"scripts/{NAME}": "", "scripts/mine.py": SERVER, "patrol.py": CLIENT, "clicks.py": BRIDGE})
     assert chosen(tmp_path) == (f"scripts/{NAME}", "clicks.py")
     assert chosen(tmp_path, "mine.py") == ("scripts/mine.py", "clicks.py")
     assert chosen(tmp_path, "patrol.py", "clicks.py") == (f"scripts/{NAME}", "clicks.py")
-    tree(tmp_path, {f"nodes/{NAME}": "x"})
-    (tmp_path / "nodes" / NAME).chmod(0o755)
-    assert chosen(tmp_path)[0] == f"nodes/{NAME}"
+    (tmp_path / "clicks.py").unlink()
+    assert chosen(tmp_path) == (f"scripts/{NAME}", None)
+    assert chosen(tmp_path, "patrol.py") == (f"scripts/{NAME}", "patrol.py")
 
 
 MAIN = "import rospy, goto_server as it\nrospy.init_node('goto')\nit.Server()\n"
@@ -79,18 +78,17 @@ def test_launched_program_is_the_server_that_it_imports(tmp_path: Path) -> None:
     assert chosen(tmp_path, "run.py") == ("lab/run.py", None)
 
 
-def test_what_the_build_installs_is_started_whatever_its_mode(tmp_path: Path) -> None:
-    tree(tmp_path, {f"src/{NAME}": "", f"scripts/{NAME}": "x", "relay": f"python_script = '{tmp_path}/src/{NAME}'\n"})
-    (tmp_path / "compiled").write_bytes(bytes(2_000_000))
-    (found,) = choose(tmp_path, (), [tmp_path / "compiled", tmp_path / "relay"]).values()
+def test_what_the_build_has_made_a_program_of_is_installed(tmp_path: Path) -> None:
+    tree(tmp_path, {f"src/{NAME}": "", f"old/{NAME}": "x"})
+    (found,) = choose(tmp_path, (), [tmp_path.parent / NAME]).values()
     assert (found.path, found.is_installed, found.others) == (
         tmp_path / "src" / NAME,
         True,
-        [tmp_path / "scripts" / NAME],
+        [tmp_path / "old" / NAME],
     )
 
 
-@pytest.mark.parametrize("names", [(f"v1/{NAME}", f"v2/{NAME}"), ("first.py", "second.py")])
+@pytest.mark.parametrize("names", [(f"nodes/{NAME}", f"scripts/{NAME}"), ("first.py", "second.py")])
 def test_two_equal_candidates_are_refused_by_name(tmp_path: Path, names: Tuple[str, str]) -> None:
     tree(tmp_path, {name: f"{SERVER}  # {name}" for name in names})
     with pytest.raises(HostingError, match=f"{names[0]} and {names[1]}: each of them could be the server"):

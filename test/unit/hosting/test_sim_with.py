@@ -1,6 +1,9 @@
 """Hosted packages: launched with the right arguments, and from scripts that can be started."""
 
 import os
+import shlex
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -49,7 +52,7 @@ def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, packa
         assert ("aro_sim" in written) != bool(others)
 
 
-def test_launch_file_gets_its_arguments_and_scripts_without_one_become_the_labs_nodes(tmp_path: Path) -> None:
+def test_launch_file_gets_its_arguments_and_scripts_without_one_are_started_as_by_rosrun(tmp_path: Path) -> None:
     package = find_package(str(tree(tmp_path / "src" / LAB, PAIR)))
     included = ElementTree.parse(write_launch_file(package, tmp_path, {"speed": "<1"}, LaunchPlan({}, {}, ()))).findall(
         "include"
@@ -58,12 +61,15 @@ def test_launch_file_gets_its_arguments_and_scripts_without_one_become_the_labs_
     assert [argument.attrib for argument in included[-1]] == [{"name": "speed", "value": "<1"}]
     scripts = {part: Choice(Path(f"{part}.py"), None, False, []) for part in ("server", "bridge")}
     written = write_launch_file(replace(package, launch_file=None), tmp_path, {}, LaunchPlan(scripts, {}, ()))
-    assert [
-        (node.get("pkg"), node.get("type"), node.get("name")) for node in ElementTree.parse(written).iter("node")
-    ] == [
+    nodes = list(ElementTree.parse(written).iter("node"))
+    assert [(node.get("pkg"), node.get("type"), node.get("name")) for node in nodes] == [
         (LAB, "server.py", "aro_robocop_goto_as_node"),
         (LAB, "bridge.py", "robocop_rviz_goto_ac_node"),
     ]
+    script = tree(tmp_path, {"a.py": f"#!{sys.executable}\nimport sys\nprint(sys.argv[1:])\n"}) / "a.py"
+    script.chmod(0o755)
+    started = [*shlex.split(nodes[0].get("launch-prefix", "")), str(script), "__name:=x", "__log:=y"]
+    assert subprocess.run(started, stdout=subprocess.PIPE, text=True).stdout == "[]\n"
 
 
 @pytest.mark.parametrize(

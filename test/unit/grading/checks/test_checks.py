@@ -109,6 +109,7 @@ WRONG: List[Tuple[str, Record, str]] = [
         Record("start", "server", up=False, servers=("/robovop_goto_as",), types=("x/GoToPositionAction",)),
         "The action server is called robovop_goto_as; the handout says robocop_goto_as",
     ),
+    ("action_server", Record("start", "server", servers=("/robovop_goto_as",)), "called robovop_goto_as; the"),
     (
         "stops_at_obstacle",
         _aborted(samples=tuple(replace(it, touching=it.time > 10.5) for it in _aborted().samples)),
@@ -175,6 +176,11 @@ NORM = (
         (["\x1b[32m[DEBUG] x"], "its output names no error"),
         (['message: "there"'], 'it had printed: message: "there"'),
         (["[FATAL] no scan"], "[FATAL] no scan"),
+        (
+            ["a.py: error: unrecognized arguments: __name:=a"],
+            "a.py: error: unrecognized arguments: __name:=a. roslaunch adds such arguments for rospy: parse "
+            "rospy.myargv()[1:], which leaves them out.",
+        ),
         (
             UNPACK,
             "TypeError: cannot unpack non-iterable NoneType object (robocop_goto_as.py, line 34: x, y = self.pose)",

@@ -5,6 +5,7 @@ import json
 
 import pytest
 from actionlib_msgs.msg import GoalID
+from aro_robocop_goto_as.msg import GoToPositionActionGoal, GoToPositionActionResult
 from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import Float64, String
 
@@ -88,6 +89,22 @@ def test_topics_of_other_types_are_not_connected_but_named(topics):
         ("/sent", "actionlib_msgs/GoalID", "geometry_msgs/PoseStamped"),
     )
     assert topics.unpublished() == ["/nothing"]
+
+
+def test_only_action_of_the_handouts_type_has_the_handouts_name_for_the_grader(topics):
+    topics.advertise("/robocop_goto_as/goal", GoToPositionActionGoal)
+    topics.subscribe("/robocop_goto_as/result", GoToPositionActionResult, topics.heard.append)
+    topics.take()
+    told(topics, [("/x/y/result", GoToPositionActionResult)], [("/x/y/goal", GoToPositionActionGoal)])
+    assert topics.node_publishes("/robocop_goto_as/result")
+    topics.publish("/robocop_goto_as/goal", GoToPositionActionGoal())
+    offered, ((name, _),) = topics.take()
+    assert {it["topic"] for it in offered} == {"/x/y/goal", "/x/y/result"} and name == "/x/y/goal"
+    topics.receive("/x/y/result", serialized(GoToPositionActionResult()))
+    topics.handle_arrived()
+    assert topics.heard == [GoToPositionActionResult()]
+    told(topics, [], [("/x/y/goal", GoToPositionActionGoal), ("/z/goal", GoToPositionActionGoal)])
+    assert not topics.node_subscribes_to("/robocop_goto_as/goal")
 
 
 @pytest.mark.parametrize("body", [b"", b"[]", b"[" * 100_000, b'{"published": 7, "subscribed": [[1]]}', b"\xff"])
