@@ -17,6 +17,13 @@ FRAME = re.compile(r' +File "(.+)", line (\d+)')
 DIED = re.compile(r"\[(\S+)-\d+\] process has died \[pid \d+, exit code (-?\d+), cmd (\S+)")
 LOG_FILE = "log file: "
 ENDED = re.compile(r"\[WARN\] \S+ has ended, without an error")
+# What to know of an exception in one's own code whose words do not say what to do.
+NOT_IMPORTED = "tf2 can transform messages of geometry_msgs only after: import tf2_geometry_msgs"
+HINTS = {
+    "Have you called init_node()?": "rospy.init_node(NAME) has to come first; correct that, and start sim --with again",
+    "if not loaded or supported": NOT_IMPORTED,
+    "ROS shutdown request": "the node was told to end, as by Ctrl-C; that is no mistake",
+}
 PARTS = {name: f"your {part}" for part, name in NODE_NAMES.items()}
 
 
@@ -83,6 +90,9 @@ class NodeErrors:
         elif self._frames and line and not line.startswith(" "):
             own = [it for it in self._frames if it[0].startswith(tuple(self._originals.values()))]
             file, number = (own or self._frames)[-1]
+            for words, hint in HINTS.items():
+                if own and words in line:
+                    self._tell(f"[WARN] {os.path.basename(file)}, line {number}: {hint}\n")
             for name, _ in self._frames:
                 self._errors[os.path.basename(name)] = f"{line} ({file}, line {number})"
             self._frames = []

@@ -5,11 +5,12 @@ import re
 from typing import Dict, Sequence
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
+from robocop_hosting.node_errors import NOT_IMPORTED
 
 from ..handout import ACTION, CLICK_TOPIC
 from ..record import Cancel, Click, Record, SentGoal
 from .node_lifetime import closest
-from .output import NOT_IMPORTED, UNKNOWN_TYPE, logged
+from .output import UNKNOWN_TYPE, logged
 from .topic_use import wrong_type
 
 POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform

@@ -5,6 +5,8 @@ import os
 import re
 from typing import Iterator, Pattern, Sequence
 
+from robocop_hosting.node_errors import NOT_IMPORTED
+
 from ..handout import GOAL_RADIUS, STOP_DISTANCE
 from ..record import Record
 from ..texts import sentences
@@ -34,7 +36,6 @@ LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/|/robocop
 FOLDER = re.compile(r"(?<=in file ).*/([^/]+ on line \d)")  # in Python's words for a file that is not UTF-8
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 UNKNOWN_TYPE = re.compile("Type .{1,100} if not loaded or supported")  # in tf2's words
-NOT_IMPORTED = "tf2 can transform messages of geometry_msgs only after: import tf2_geometry_msgs"
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
 JUST_BEFORE = 1.0  # [s] before a goal's end, in which an exception can be its cause
 DELAY = 0.25  # [s] after which a line has been read
