@@ -72,7 +72,6 @@ class NodeErrors:
                 for copy, original in self._originals.items():
                     line = line.replace(copy, original)
                 plain = COLOUR.sub("", line)
-                self._note(plain.rstrip("\n"))
                 died = DIED.match(plain)
                 if died:
                     self._tell(f"[ERROR] {self._sentence(*died.groups())}\n")
@@ -80,6 +79,7 @@ class NodeErrors:
                     self._tell(line)
                 elif not (is_after_death and plain.startswith(LOG_FILE)):
                     self._screen.write(line)
+                self._note(plain.rstrip("\n"))
                 is_after_death = died is not None
 
     def _note(self, line: str) -> None:

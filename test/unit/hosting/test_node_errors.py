@@ -74,11 +74,15 @@ def test_nodes_that_have_ended_are_told_below_what_other_nodes_print() -> None:
         ("ROS shutdown request", "the node was told to end, as by Ctrl-C; that is no mistake"),
     ],
 )
-def test_exception_that_does_not_say_what_to_do_is_followed_by_that_below_the_overview(words: str, hint: str) -> None:
+def test_exception_that_does_not_say_what_to_do_is_followed_by_that(words: str, hint: str) -> None:
     elsewhere = f'  File "/usr/lib/python3/rospy/timer.py", line 223, in run\n    r = Rate()\nError: {words}\n'
-    *_, above, last = screen(TRACEBACK.replace("TabError: words", f"Error: {words}") + elsewhere).splitlines()
-    assert above == f"Error: {words}", "told once, where the author's own file is in the traceback"
+    *_, above, last = screen("", elsewhere + TRACEBACK.replace("TabError: words", f"Error: {words}")).splitlines()
+    assert above == f"Error: {words}"
     assert last.startswith(f"[WARN] robocop_goto_as.py, line 42: {hint}")
+    assert screen(TRACEBACK.replace("TabError: words", f"Error: {words}") + elsewhere).splitlines()[-2:] == [
+        f"Error: {words}",
+        last,
+    ], "below the overview, and only where the author's own file is in the traceback"
 
 
 def test_exception_of_one_script_is_not_the_reason_for_the_end_of_another() -> None:
