@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import pty
 import shutil
 import subprocess
 from pathlib import Path
@@ -24,6 +25,37 @@ def test_shell_passes_arguments_and_exit_status_through():
     found, words_passed = done.stdout.split("\n")
     assert (done.returncode, words_passed) == (7, "[a b][-0.5][][--help][--extend]")
     assert found.endswith("src/aro_robocop_goto_as"), done.stderr
+
+
+def test_shell_completes_by_tab_and_knows_robocop_in_every_folder(tmp_path):
+    keyboard, terminal = pty.openpty()
+    os.write(keyboard, b"cd /; robocop version\nrosmsg show std_msgs/Floa\t32\nexit\n")
+    command, settings = [str(ROOT / "robocop"), "shell"], environment(HOME=str(tmp_path), TERM="dumb")
+    done = subprocess.run(command, env=settings, stdin=terminal, stderr=terminal, stdout=subprocess.PIPE, text=True)
+    os.close(terminal)
+    os.close(keyboard)
+    assert done.stdout.startswith("aro_robocop_goto_as ") and done.stdout.endswith("float32 data\n\n")
+
+
+@pytest.mark.parametrize("arguments", [("run",), ("clean",)])
+def test_state_of_another_user_is_refused_with_the_remedy(checkout, arguments):
+    root = checkout.rename(checkout.parent / "plain")
+    (root / ".robocop").mkdir()
+    by_root = os.geteuid() == 0
+    if by_root:
+        os.chown(root / ".robocop", 65534, 65534)
+    else:
+        (root / ".robocop").rmdir()
+        (root / ".robocop").symlink_to("/usr")
+    done = robocop(*arguments, root=root)
+    remedy = "without sudo" if by_root else 'this makes it yours: sudo chown -R "$USER" '
+    assert done.returncode == 1 and remedy in done.stderr and done.stderr.count("\n") == 1
+    assert (root / ".robocop").exists()
+
+
+def test_script_that_is_started_by_sh_runs_in_bash():
+    done = subprocess.run(["sh", str(ROOT / "robocop"), "version"], stdout=subprocess.PIPE, text=True)
+    assert done.stdout.startswith("aro_robocop_goto_as ")
 
 
 @pytest.mark.parametrize(

@@ -5,11 +5,13 @@ The shell script `robocop` starts it when nothing may be installed yet, so it us
 
 import glob
 import os
+import shlex
 import subprocess
 import sys
 from typing import Callable, Dict, List, NoReturn, Sequence
 
 from ..errors import RobocopError
+from ..names import robocop
 from ..suggestions import did_you_mean
 from . import container_image, doctor, program, system_commands
 from .help_texts import described, shown
@@ -17,10 +19,14 @@ from .program import ROOT, refuse, say
 
 UNKNOWN_COMMAND = 2  # exit status
 NOT_GRADED = 4  # exit status of the graders
+# Of Debian's rosbash, which needs no bash-completion; of ROS in /opt/ros, setup.bash loads them.
+COMPLETIONS = "/usr/share/bash-completion/completions/rosbash"
 SHELL_SETTINGS = """\
 [ ! -r ~/.bashrc ] || . ~/.bashrc
 PATH={venv}/bin:/usr/bin:/bin:$PATH  # ~/.bashrc may have put another Python first
 . "$ROBOCOP_WS/setup.bash"
+[ ! -r {completions} ] || . {completions}
+robocop() {{ {script} "$@"; }}  # in whatever folder
 PS1="(robocop) $PS1"
 """
 
@@ -51,9 +57,10 @@ def shell(arguments: List[str]) -> None:
     program.need()
     if arguments:
         program.start(*arguments)
-    settings = program.state() / "bashrc"
+    settings, script = program.state() / "bashrc", shlex.quote(program.SCRIPT)
     if not program.is_dry_run():
-        settings.write_text(SHELL_SETTINGS.format(venv=program.state() / "venv"), encoding="utf-8")
+        text = SHELL_SETTINGS.format(venv=program.state() / "venv", completions=COMPLETIONS, script=script)
+        settings.write_text(text, encoding="utf-8")
     program.start("bash", "--rcfile", str(settings))
 
 
@@ -69,7 +76,7 @@ def setup(parts: List[str]) -> None:
     if "grade" in parts:  # what the first grading would build: a container would repeat it at each start
         prebuild = program.module("robocop_grading.submission")
         subprocess.run(prebuild, env=program.workspace_environment(), check=True)
-    say(f"ready in {program.state()}; ./robocop run starts the lab")
+    say(f"ready in {program.state()}; {robocop()} run starts the lab")
 
 
 def test(arguments: List[str]) -> None:
@@ -100,8 +107,9 @@ def show_help(commands: List[str]) -> None:
 
 def refuse_unknown(command: str) -> NoReturn:
     """End with an error for a command that does not exist."""
-    hint = did_you_mean(command, described())
-    say(f"unknown command '{command}' (./robocop help lists them){hint}")
+    ends = command in ("stop", "kill", "quit", "exit")
+    hint = "; Ctrl-C in its terminal ends what runs there" if ends else did_you_mean(command, described())
+    say(f"unknown command '{command}' ({robocop()} help lists them){hint}")
     sys.exit(UNKNOWN_COMMAND)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Dict, List, Tuple
 
 from ..errors import MasterError
+from ..names import robocop
 from ..probes import master, settings, x_display
 
 PYTHON = "/usr/bin/python3"
@@ -137,7 +138,7 @@ def _problems(unsupported: str, missing: Dict[str, str], complete: bool) -> List
     if missing.get("modules"):
         problems.append((f"Python modules of ROS: {missing['modules']}", "install ros-noetic-* or python3-* packages"))
     if not complete:
-        problems.append(("the virtual environment or the workspace", "./robocop setup"))
+        problems.append(("the virtual environment or the workspace", f"{robocop()} setup"))
     return problems
 
 
@@ -153,7 +154,7 @@ def report(script: str, checkout: str, state: str) -> int:
     rows, problems = examine(checkout, state, ros, ask("_unsupported"), {**required, **missing})
     for name, value in rows:
         print(f"{name:11} {value}")
-    print("\nnothing is missing: ./robocop run starts the lab" if not problems else "\nmissing or wrong:")
+    print(f"\nnothing is missing: {robocop()} run starts the lab" if not problems else "\nmissing or wrong:")
     for what, remedy in problems:
         print(f"  {what}\n      {remedy}")
     return 1 if problems else 0

@@ -9,16 +9,13 @@ import time
 from typing import List, NoReturn, Sequence, Tuple
 
 from ..launch_arguments import TRUE, LaunchArguments, with_absolute_path
-from ..names import ACTION, ACTION_TYPE, PACKAGE, SIMULATOR, absolute
+from ..names import ACTION, ACTION_TYPE, PACKAGE, SIMULATOR, absolute, robocop
 from ..probes import master, settings, x_display
 from . import program
 from .program import REPLAY, RUN, SIM, refuse, say
 
-# What rosbag records: full topic names, also of robots with a namespace.
-RECORDED = (
-    "/(.*/)?(clock|tf|tf_static|scan|odom|ground_truth_odom|joint_states|imu|cmd_vel|map|initialpose"
-    "|move_base_simple/goal|robocop_goto_as/.*|world|markers|status|rosout)"
-)
+# What rosbag leaves out: what is large, as a camera's images that are not compressed, and rosout for the second time.
+NOT_RECORDED = "/(.*/)?(image_raw|points|rosout_agg)"
 MIN_RATE = 0.01  # times as fast as recorded
 BAG_VERSION = b"#ROSBAG V2.0\n"
 BAG_HEAD = 4096  # bytes, which hold the version and the header
@@ -48,12 +45,14 @@ def refuse_second_simulator() -> None:
     uri = master.master_uri()
     simulator = None if program.is_dry_run() else master.running_simulator(uri)
     if simulator:
-        how = f"with Ctrl-C in its terminal or with ./robocop shell rosnode kill {absolute('', SIMULATOR)}"
+        how = f"with Ctrl-C in its terminal or with {robocop()} shell rosnode kill {absolute('', SIMULATOR)}"
         refuse(f"{simulator} on {uri}; stop it {how}, or use another ROS_MASTER_URI")
 
 
 def run(arguments: List[str]) -> None:
     """Simulator, server, bridge and RViz, or the web page where there is no display."""
+    if "--with" in arguments:
+        refuse(f"run: --with is an option of sim: {robocop()} sim --with PATH")
     given = LaunchArguments.parse(RUN, arguments)
     if given.value("sim") in ("false", "False", "0"):  # it may be another's, or a real robot
         require_settings()
@@ -126,7 +125,7 @@ def axclient(arguments: List[str]) -> None:
     if arguments and (len(arguments) != 2 or arguments[0] != "--robot"):
         refuse(f"axclient: expected --robot NAME or nothing, got {' '.join(arguments)}")
     if not program.is_dry_run() and not x_display.answers():
-        refuse("axclient: it is a window, and there is no usable display; ./robocop goto X Y sends a goal without one")
+        refuse(f"axclient: it needs a display, and there is none; {robocop()} goto X Y sends a goal without one")
     program.need("axclient")
     say("change the numbers under Goal and press SEND GOAL; close the window to end it")
     program.start("rosrun", "actionlib_tools", "axclient.py", absolute("".join(arguments[1:]), ACTION), ACTION_TYPE)
@@ -147,10 +146,10 @@ def record(arguments: List[str]) -> None:
     program.need()
     if not program.is_dry_run():
         if not master.master_answers(master.master_uri()):
-            refuse("record: no ROS system is running; start ./robocop run in another terminal first")
-        say(f"recording to {bag} until Ctrl-C; ./robocop replay {bag} plays it")
+            refuse(f"record: no ROS system is running; start {robocop()} run in another terminal first")
+        say(f"recording to {bag} until Ctrl-C; {robocop()} replay {bag} plays it")
     # Not `rosbag record`, which would be its parent, and if killed leave it running.
-    program.start("rosrun", "rosbag", "record", "--quiet", f"--output-name={bag}", "--regex", RECORDED)
+    program.start("rosrun", "rosbag", "record", "--quiet", f"--output-name={bag}", "--all", f"--exclude={NOT_RECORDED}")
 
 
 def _require_number(text: str, lowest: float, expected: str) -> None:
@@ -170,10 +169,10 @@ def _index_of(path: str) -> int:
         head = file.read(BAG_HEAD)
     index = head.partition(b"index_pos=")[2][:8]  # 0 while it is being recorded
     if not head.startswith(BAG_VERSION) or not index:
-        refuse(f"replay: {path} is no bag of ROS 1; expected a bag of ./robocop record or of a report")
+        refuse(f"replay: {path} is no bag of ROS 1; expected a bag of {robocop()} record or of a report")
     position = int.from_bytes(index, "little")
     if not 0 < position <= os.path.getsize(path):
-        refuse(f"replay: {path} is not complete; this repairs what is there: ./robocop shell rosbag reindex {path}")
+        refuse(f"replay: {path} is not complete; this repairs what is there: {robocop()} shell rosbag reindex {path}")
     return position
 
 
@@ -191,8 +190,10 @@ def _duration(path: str, index_position: int) -> float:
 def replay(arguments: List[str]) -> None:
     """Play a bag in the web page, and in RViz if a display is available."""
     bag = arguments[0] if arguments else ""
-    if not (program.is_dry_run() and bag) and not os.path.isfile(bag):
-        refuse(f"replay: expected a bag of ./robocop record or of a report, got '{bag}'")
+    if not bag:
+        refuse(f"replay: expected a bag of {robocop()} record or of a report")
+    if not program.is_dry_run() and not os.path.isfile(bag):
+        refuse(f"replay: there is no file {bag}")
     duration = math.inf if program.is_dry_run() else _duration(bag, _index_of(bag))
     rest, option, after = _split_at(arguments[1:], "--start")
     if option:

@@ -36,14 +36,14 @@ def parse_count(text: str) -> int:
     """The number of robots in a text of digits; ParameterError if there are none or more than MAX_COUNT."""
     count = int(text) if len(text) <= len(str(MAX_COUNT)) else MAX_COUNT + 1
     if not 1 <= count <= MAX_COUNT:
-        raise ParameterError(f"robots: expected at {'least 1' if count < 1 else f'most {MAX_COUNT}'}")
+        raise ParameterError(f"robots: expected a number from 1 to {MAX_COUNT}, got {text[:20]}")
     return count
 
 
 def parse_robots(text: str) -> List[SpawnRequest]:
     """The entries of 'NAME[:MODEL] X Y [YAW]; ...' [m, rad]; ParameterError quotes the entry that is wrong."""
     requests: List[SpawnRequest] = []
-    for entry in (part.strip() for part in text.split(";")):
+    for entry in (part.strip() for part in text.strip(" ;").split(";")):
         head, _, pose = entry.partition(" ")
         name, colon, model = head.partition(":")
         if not (name.isidentifier() and name.isascii()) or bool(colon) != bool(model) or not pose.strip():

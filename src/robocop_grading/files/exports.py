@@ -8,6 +8,7 @@ from typing import Collection, Dict, List, NamedTuple
 
 import yaml
 
+from aro_robocop_goto_as.names import robocop
 from robocop_hosting import tree
 from robocop_hosting.scripts import ASIDE
 
@@ -19,7 +20,7 @@ MOODLE = re.compile(r"(.+)_(\d+)_assignsubmission_[a-z]+(_.*)?")  # full name, n
 GRADESCOPE = re.compile(r"submission_\d+")
 SERVERS = re.compile(r"robocop_goto_as.*\.py")
 EXPECTED = "a folder, a zip or tar archive, or a Python file"
-SEVERAL = "is this folder a class? ./robocop grade-class grades each hand-in in it"
+SEVERAL = f"is this folder a class? {robocop()} grade-class grades each hand-in in it"
 
 
 class Person(NamedTuple):

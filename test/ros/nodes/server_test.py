@@ -8,8 +8,7 @@ import math
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from dynamic_reconfigure.client import Client
-from geometry_msgs.msg import Twist
-from harness import DEADLINE, SERVER, SIMULATOR, SystemTest, call_simulator, wait_for, wait_for_subscriber
+from harness import DEADLINE, SERVER, SystemTest, call_simulator, wait_for
 
 from aro_robocop_goto_as.goto.params import GotoParams
 
@@ -40,13 +39,9 @@ class Server(SystemTest):
             self.assertIn(f"position x {x} y 0.0: expected finite numbers in metres", text)
         self.assertEqual({message.linear.x for message in self.robot.commands.messages}, {0.0})
 
-    def test_goal_without_progress_names_the_other_nodes_that_command_the_robot(self):
+    def test_goal_without_progress_ends(self):
         self.tune({"min_linear_velocity": 0.001, "max_linear_velocity": 0.001})
-        other = rospy.Publisher("cmd_vel", Twist, queue_size=1)
-        self.addCleanup(other.unregister)
-        wait_for_subscriber(other, SIMULATOR)
-        text = self.goals.send(0.6, 0.0).result("STUCK").result.message
-        self.assertTrue(text.endswith(f"; /cmd_vel is also published by {rospy.get_name()}"), text)
+        self.goals.send(0.6, 0.0).result("STUCK")
 
     def test_cancel_is_served_while_the_clock_is_stopped(self):
         goal = self.send_while_the_clock_is_stopped()

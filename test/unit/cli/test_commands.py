@@ -40,6 +40,24 @@ def test_each_command_prints_its_part_of_the_help_and_starts_nothing(words):
     assert re.search(r"(?m)^    world:= +NAME of worlds/NAME.sdf, ", arguments)  # as in robocop_sim.launch
 
 
+@pytest.mark.parametrize(
+    "words, reason",
+    [
+        (("stop",), "unknown command 'stop' (./robocop help lists them); Ctrl-C in its terminal ends what runs there"),
+        (("run", "--with", "my_lab"), "run: --with is an option of sim: ./robocop sim --with PATH"),
+        (("replay", "nowhere.bag"), "replay: there is no file nowhere.bag"),
+        (("replay",), "replay: expected a bag of ./robocop record or of a report"),
+    ],
+)
+def test_mistaken_command_is_refused_with_the_one_to_use(words, reason):
+    done = robocop(*words)
+    assert (done.stdout, done.stderr) == ("", f"robocop: {reason}\n") and done.returncode
+
+
+def test_messages_name_the_command_as_a_container_has_it():
+    assert "(docker exec x robocop help lists them)" in robocop("tset", ROBOCOP_COMMAND="docker exec x robocop").stderr
+
+
 def test_unknown_command_is_refused_with_the_one_that_may_be_meant():
     done = robocop("tset")
     assert (done.returncode, done.stdout) == (2, "")
@@ -152,7 +170,10 @@ def test_a_recording_gets_the_ending_of_a_bag_and_never_overwrites_one(tmp_path,
     monkeypatch.chdir(tmp_path)
     words = shlex.split(dry_run("record", "lab")[0])
     assert words[:3] == ["rosrun", "rosbag", "record"] and "--output-name=lab.bag" in words
-    assert all(re.fullmatch(words[-1], topic) for topic in ("/scan", "/robot_1/odom", "/robocop_goto_as/result"))
+    left_out = words[-1].partition("--exclude=")[2]
+    assert all(re.fullmatch(left_out, topic) for topic in ("/camera/rgb/image_raw", "/red/camera/depth/points"))
+    recorded = ("/scan", "/bumper", "/map_metadata", "/camera/rgb/image_raw/compressed", "/rosout")
+    assert "--all" in words and not any(re.fullmatch(left_out, topic) for topic in recorded)
     (tmp_path / "lab.bag").write_text("")
     for arguments, reason in (
         (["/nosuch/x.bag"], "/nosuch is not a folder in which a file can be created"),
@@ -187,9 +208,6 @@ def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
     assert too_late == f"robocop: replay: --start 7.6: {tmp_path}/whole.bag ends 7.5 s after its beginning\n"
     (tmp_path / "cut.bag").write_bytes((tmp_path / "whole.bag").read_bytes()[:4200])
     assert "cut.bag is not complete" in robocop("replay", f"{tmp_path}/cut.bag").stderr
-    done = robocop("replay", "nowhere.bag")
-    assert (done.returncode, done.stdout) == (1, "")
-    assert "replay: expected a bag of ./robocop record or of a report, got 'nowhere.bag'" in done.stderr
 
 
 def test_foreign_package_is_started_from_its_absolute_path(tmp_path):

@@ -17,7 +17,7 @@ def test_default_is_one_robot_without_a_name(burger: RobotModel) -> None:
 
 
 def test_a_list_may_name_a_model_for_a_robot() -> None:
-    p = SimParams.of(robots="red 0 0; blue:waffle 1 -1", model="turtlebot2").robots
+    p = SimParams.of(robots="red 0 0; blue:waffle 1 -1;", model="turtlebot2").robots
     robots = robots_from(p, world_named("empty"), model_named)
     assert [robot.model.name for robot in robots] == ["turtlebot2", "turtlebot3_waffle"]
 
@@ -25,13 +25,13 @@ def test_a_list_may_name_a_model_for_a_robot() -> None:
 @pytest.mark.parametrize(
     "text, expected",
     [
-        ("0", "expected at least 1"),
+        ("0", "expected a number from 1 to 1000, got 0"),
         ("red", "expected a number, such as 3, or 'NAME X Y"),
         ("red 1", "expected 'x y' or 'x y yaw'"),
         (":waffle 0 0", "or 'NAME:MODEL X Y [YAW]; ...'"),
         ("red 0 0; red 1 1", "'red' is given twice"),
         ("r/d 0 0", "got 'r/d 0 0'"),
-        ("red 0 0;", "or 'NAME X Y"),
+        (";", "or 'NAME X Y"),
         ("red 1e7 0", "numbers within +-1e+06, got '1e7 0'"),
     ],
 )

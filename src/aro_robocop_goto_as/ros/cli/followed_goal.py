@@ -16,7 +16,7 @@ from visualization_msgs.msg import MarkerArray
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, SimStatus
 
 from ...errors import FrameError
-from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, position_text, prefixed
+from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, position_text, prefixed, robocop
 from ...probes import master
 from ...process import signals
 from ...raycast.enclosure import is_outside
@@ -32,9 +32,12 @@ PAUSE_TIMEOUT = 1.0  # [s, wall] without a change of simulated time
 STATUS = absolute(SIMULATOR, "status")
 SLIPPED = (
     "the wheels slipped at an obstacle, so odometry is wrong and the robot is not where it says; this puts robots and "
-    f"odometry back: rosservice call {absolute(SIMULATOR, 'reset')} 0"
+    f"odometry back: {robocop()} shell rosservice call {absolute(SIMULATOR, 'reset')} 0"
 )
-PAUSED = "simulated time does not advance; is the simulator paused? (rosservice call /robocop_sim/unpause)"
+PAUSED = (
+    "simulated time does not advance; is the simulator paused? "
+    f"({robocop()} shell rosservice call {absolute(SIMULATOR, 'unpause')})"
+)
 
 
 def standstill() -> str:

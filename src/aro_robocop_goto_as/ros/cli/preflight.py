@@ -16,7 +16,6 @@ from ...reading import reading
 from ...robot.model_names import urdf_of
 from ...simulation.params import SimParams
 from ...suggestions import did_you_mean
-from ...web.access import default_host, require_free
 from ...web.params import WebParams
 from ...world.load import RANDOM, find_world
 from ...world.spawn_texts import parse_count, parse_robots, parse_spawn
@@ -50,8 +49,7 @@ def check(given: Mapping[str, str]) -> None:
         for request in parse_robots(text):
             urdf_of(request.model or p.robots.model, share())
     if given.get("web") in TRUE:
-        page = from_dict(WebParams, _values(given, WebParams), "launch arguments")
-        require_free(page.web_host if given.get("web_host") else default_host(), page.web_port)
+        from_dict(WebParams, _values(given, WebParams), "launch arguments")
     for name, value in given.items():
         if name.endswith("config") and value.endswith(".yaml") and "$(" not in value:
             if not os.path.isfile(value):

@@ -87,8 +87,7 @@ class Bridge:
             try:
                 position = self.resolve(click)
             except FrameError as error:
-                rospy.logerr("goal refused, an earlier goal continues: %s", error)
-                self.publish_status(f"goal refused: {error}", rospy.loginfo)
+                self.publish_status(f"goal refused: {error}", rospy.logerr)
             else:
                 self.replace_goal(position, click)
 

@@ -13,12 +13,11 @@ from sensor_msgs.msg import LaserScan
 
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionGoal, GoToPositionResult
 
-from ...errors import ClockError, MasterError, RobocopError
+from ...errors import ClockError, RobocopError
 from ...geometry import NANOSECONDS, STANDSTILL, Twist2D
 from ...goto.params import GotoParams
 from ...goto.rule import Outcome
 from ...names import ACTION, SERVER
-from ...probes import master
 from .. import convert
 from ..connected_nodes import is_connected_to, sender
 from ..node_main import answer_help, load_params, node
@@ -147,8 +146,6 @@ class GotoNode:
     def set_terminal_state(self, execution: GoalExecution, ending: Ending) -> None:
         """Report how the goal ended, once."""
         execution.outcome, self.display.state = ending.outcome, ending.message
-        if ending.outcome is Outcome.STUCK:
-            ending = Ending(ending.outcome, ending.text + self.other_commands())
         log = rospy.loginfo if ending.outcome in (Outcome.REACHED, Outcome.PREEMPTED) else rospy.logwarn
         log("%s", ending.message)
         result = GoToPositionResult(ending.outcome is Outcome.REACHED, ending.message)
@@ -158,16 +155,6 @@ class GotoNode:
             self.server.set_preempted(result, ending.message)
         else:
             self.server.set_aborted(result, ending.message)
-
-    def other_commands(self) -> str:
-        """Which other nodes publish cmd_vel, as the end of a sentence; empty if none."""
-        topic = self.cmd_vel.resolved_name
-        try:
-            nodes = master.publishers(master.master_uri(), topic).get(topic, [])
-        except (OSError, MasterError):
-            return ""
-        others = [node for node in nodes if node != rospy.get_name()]
-        return f"; {topic} is also published by {' and '.join(others)}" if others else ""
 
     def is_in_lockstep(self) -> bool:
         """Return whether the node that publishes odom also subscribes to tick_answer: it is a simulator in lockstep.

@@ -60,7 +60,7 @@ class Ticks:
         with contextlib.suppress(OSError, rosgraph.MasterException):
             nodes = [node for topic in published_topics() if topic.name == "/clock" for node in topic.publishers]
             if len(nodes) > 1:
-                text = "%s publish /clock, so time jumps: end all but one (rosbag play: without --clock)"
+                text = "%s publish /clock, so time jumps: end all but one (rosbag play: /clock:=/bag_clock, no --clock)"
                 rospy.logwarn_once(text, " and ".join(sorted(nodes)))
 
     def wake(self) -> None:

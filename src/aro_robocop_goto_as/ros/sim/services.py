@@ -11,7 +11,7 @@ from std_srvs.srv import Trigger
 from aro_robocop_goto_as.cfg import SimConfig
 from aro_robocop_goto_as.srv import DeleteModel, MoveModel, Reset, SetPose, SpawnModel, Step
 
-from ...errors import FrameError, PlaceError, WorldError
+from ...errors import FrameError, PlaceError, ShutdownError, WorldError
 from ...geometry import Pose2D, Pose3D, compose
 from ...names import prefixed
 from ...simulation.running import RunningSimulator
@@ -22,7 +22,7 @@ from .. import convert
 
 MAX_SPAN = 1e6  # [s]
 Offer = Callable[[str, Any, Callable[[Any], Any]], object]  # of a service: name, type, request -> response
-REFUSALS = FrameError, PlaceError, WorldError
+REFUSALS = FrameError, PlaceError, WorldError, ShutdownError
 
 
 def serve(

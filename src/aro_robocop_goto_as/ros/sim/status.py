@@ -9,7 +9,7 @@ from std_msgs.msg import Float64
 from aro_robocop_goto_as.msg import SimStatus
 
 from ...geometry import Pose2D, compose
-from ...names import SIMULATOR, absolute
+from ...names import SIMULATOR, absolute, robocop
 from ...simulation.lockstep import Connected, ControllerId, TickReport
 from ...simulation.running import RunningSimulator
 from ...simulation.simulator import Simulator
@@ -95,10 +95,13 @@ class StatusTopics:
     def _watch_slip(self) -> None:
         """Note robots whose wheels turned at an obstacle until odometry was off by their radius, and warn once of each.
 
-        Where map -> odom follows the truth or is left to a localization, odometry's error does not stay.
+        Where map -> odom follows the truth or is left to a localization, odometry's error does not stay. Where errors
+        of odometry are set, it may come from them.
         """
         simulator = self._running.simulator
-        if simulator.params.topics.localization != "static":
+        odometry = simulator.params.sensors.odometry
+        has_errors = odometry.odom_wheel_radius_error or odometry.odom_slip
+        if has_errors or simulator.params.topics.localization != "static":
             return
         for index, robot in enumerate(simulator.robots):
             error = odometry_error(simulator, index)
@@ -108,9 +111,10 @@ class StatusTopics:
                 self._slipped.add(index)
                 rospy.logwarn(
                     "the wheels %sslipped at an obstacle: odometry is %.2f m off; this puts robots and odometry back: "
-                    "rosservice call %s 0",
+                    "%s shell rosservice call %s 0",
                     robot.name and f"of {robot.name} ",
                     error,
+                    robocop(),
                     absolute(SIMULATOR, "reset"),
                 )
 

@@ -131,6 +131,16 @@ def test_refused_click_leaves_the_earlier_goal(system):
     assert (system.calls, system.statuses[-1]) == (["goal 1"], "goal refused: no transform")
 
 
+def test_click_that_is_refused_while_the_earlier_goal_is_cancelled_says_nothing_of_that_goal(system, monkeypatch):
+    errors = []
+    monkeypatch.setattr(rospy, "logerr", lambda text, *values: errors.append(text % values))
+    system.bridge.replace_goal(Point(1.0, 0.0, 0.0), PoseStamped())
+    system.on_cancel = lambda: system.click(-1.0)
+    system.click(2.0)
+    system.bridge.run()
+    assert (system.calls, errors) == (["goal 1", "cancel"], ["goal refused: no transform"])
+
+
 def test_status_tells_of_the_last_goal(system):
     system.bridge.report()
     system.bridge.replace_goal(Point(1.0, 0.0, 0.0), PoseStamped())

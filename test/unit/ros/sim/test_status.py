@@ -1,6 +1,6 @@
 """StatusTopics: a warning for a machine that is too slow for the requested factor, and none for any other one."""
 
-from typing import Any, List
+from typing import Any, Dict, List
 from unittest.mock import MagicMock
 
 import pytest
@@ -8,6 +8,7 @@ from fakes import FakeClock
 
 from aro_robocop_goto_as.ros.sim import status
 from aro_robocop_goto_as.simulation.lockstep import ControllerId
+from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.simulation.time_control import Pacer
 
 RATE = 240  # [Hz]
@@ -52,6 +53,24 @@ def test_a_controller_at_full_speed_without_lockstep_is_warned_of_once(
         topics.warn_of_full_speed(lambda: {ControllerId(0, "/node")} if nodes else set())
     words = "/node may not keep up; use sync:=lockstep" if factor else "/node can't keep up; use sync:=lockstep"
     assert len(warnings) == count and all(words in text for text in warnings)
+
+
+@pytest.mark.parametrize("setting, count", [({}, 1), ({"odom_slip": 0.1}, 0), ({"odom_wheel_radius_error": 0.05}, 0)])
+def test_wheels_that_slipped_are_told_once_with_the_remedy_unless_errors_of_odometry_are_set(
+    monkeypatch: pytest.MonkeyPatch, setting: Dict[str, float], count: int
+) -> None:
+    warnings, running = [], MagicMock()
+    running.simulator.params = SimParams.of(**setting)
+    running.simulator.robots = [MagicMock()]
+    running.simulator.robots[0].name, running.simulator.robots[0].model.figures.footprint_radius = "", 0.1
+    monkeypatch.setattr(status, "publisher", MagicMock())
+    monkeypatch.setattr(status, "odometry_error", lambda *_: 0.2)
+    monkeypatch.setattr(status.rospy, "logwarn", lambda text, *values: warnings.append(text % values))
+    topics: Any = status.StatusTopics(running)
+    for _ in range(2):
+        topics._watch_slip()
+    assert len(warnings) == count
+    assert all(text.endswith(": ./robocop shell rosservice call /robocop_sim/reset 0") for text in warnings)
 
 
 def test_a_factor_that_is_kept_is_no_reason_for_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
