@@ -4,7 +4,7 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional
+from typing import Dict, List, Mapping
 
 from aro_robocop_goto_as.suggestions import did_you_mean
 from robocop_hosting.tree import remove, temporary_folder
@@ -30,10 +30,10 @@ _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
 EXCUSE = " (is the machine short of memory?)"
 
 
-def grade(runner: Runner, submission: Submission, folder: Path, place: Optional[Path] = None) -> Grade:
+def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = False) -> Grade:
     """Write the report and the bags to `folder`.
 
-    `place`: where the folder will be moved, with the bags of failed scenarios only. A part that is killed is run again.
+    `moves`: it goes to whoever handed in, with the bags of failed scenarios only. A part that is killed is run again.
     UngradableError if the part is killed again and may not be to blame, or if the machine has no time for it.
     """
     plan = runner.plan
@@ -51,9 +51,9 @@ def grade(runner: Runner, submission: Submission, folder: Path, place: Optional[
         folder.mkdir(parents=True, exist_ok=True)
         failed = {f"{check.part}-{check.scenario}" for check in judged.checks if check.failure is not None}
         for bag in sorted(Path(work).glob("*/*.bag")):
-            if place is None or bag.stem in failed:
+            if not moves or bag.stem in failed:
                 shutil.copyfile(bag, folder / bag.name)
-        report.write(judged, plan, records, folder, place)
+        report.write(judged, plan, records, folder, moves)
     return judged
 
 
