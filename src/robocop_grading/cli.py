@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Callable, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import InstallationError, ParameterError, RobocopError
+from aro_robocop_goto_as.own_path import expect_own
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
 from robocop_hosting import tree
@@ -37,6 +38,7 @@ SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 
 ALL_PLOTS = "draw plots and keep bags of all scenarios (default: of those in which a check failed)"
 WRONG_USES = (GradingSetupError, InstallationError, ParameterError, PlanError)
 MAX_SHOWN = 1_000  # characters of an error
+STAMP = ".robocop_report"  # in a folder of a report
 
 
 def progress(plan: Plan, parts: Sequence[str]) -> Callable[[str, str], None]:
@@ -132,7 +134,7 @@ def _plan(args: argparse.Namespace, share: Path) -> Plan:
 def _kept_traceback(args: argparse.Namespace) -> Path:
     """The path of a file in the report's folder, to which the traceback of the present exception is written."""
     folder = Path(args.report or report_folder(places()[0] / "reports", args.path, not args.only))
-    return faults.keep([traceback.format_exc()], make_report_folder(folder))
+    return faults.keep([traceback.format_exc()], make_report_folder(folder, STAMP))
 
 
 def main() -> None:
@@ -141,8 +143,10 @@ def main() -> None:
     interrupt_on_signal()
     try:
         state, share = places()
+        if args.report:
+            expect_own(Path(os.path.realpath(args.report)), STAMP, Path(os.path.realpath(args.path)))
         plan = _plan(args, share)
-        given = make_report_folder(Path(args.report)) if args.report else None
+        given = make_report_folder(Path(args.report), STAMP) if args.report else None
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"])
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
         with scratch_folder(), exclusive(folder_in_use):
@@ -153,7 +157,7 @@ def main() -> None:
             submission = replace(submission, notes=[*submission.notes, *notes])
             if not any(plan.examines(script.part) for script in submission.scripts):
                 raise GradingSetupError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
-            folder = given or make_report_folder(report_folder(state / "reports", args.path, plan.is_whole))
+            folder = given or make_report_folder(report_folder(state / "reports", args.path, plan.is_whole), STAMP)
             on_progress = progress(plan, [script.part for script in submission.scripts])
             runner = Runner(plan, state, sandbox, on_progress)
             grade = grade_submission(runner, submission, folder, all_plots=args.all_plots)

@@ -4,7 +4,7 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional
+from typing import Dict, List, Mapping
 
 from aro_robocop_goto_as.suggestions import did_you_mean
 from robocop_hosting.tree import remove, temporary_folder
@@ -31,12 +31,10 @@ _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
 EXCUSE = " (is the machine short of memory?)"
 
 
-def grade(
-    runner: Runner, submission: Submission, folder: Path, place: Optional[Path] = None, all_plots: bool = False
-) -> Grade:
+def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = False, all_plots: bool = False) -> Grade:
     """Write the report to `folder`, with plots and bags of the scenarios in which a check failed, or of all.
 
-    `place`: where the folder will be moved. A part that is killed is run again.
+    `moves`: it goes to whoever handed in. A part that is killed is run again.
     UngradableError if the part is killed again and may not be to blame, or if the machine has no time for it.
     """
     plan = runner.plan
@@ -56,7 +54,7 @@ def grade(
         for bag in sorted(Path(work).glob("*/*.bag")):
             if all_plots or judged.failed_in(*bag.stem.split("-", 1)):
                 shutil.copyfile(bag, folder / bag.name)
-        report.write(judged, plan, records, folder, place, all_plots)
+        report.write(judged, plan, records, folder, moves, all_plots)
     return judged
 
 

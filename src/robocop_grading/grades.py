@@ -56,7 +56,7 @@ class CheckResult:
         failure = self.failure
         if failure is None:
             return ""
-        return f"Expected {failure.expected}, got {failure.seen}, at {failure.time:.1f} s of scenario {self.scenario}"
+        return f'Expected {failure.expected}, got {failure.seen}, at {failure.time:.1f} s of scenario "{self.scenario}"'
 
 
 @dataclass(frozen=True)

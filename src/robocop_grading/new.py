@@ -1,6 +1,7 @@
 """robocop new: create a package with the handout's TODOs, or the graders for GitHub Classroom or Gradescope."""
 
 import argparse
+import random
 import re
 import shlex
 import shutil
@@ -11,6 +12,7 @@ from typing import Optional
 
 from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.names import robocop
+from aro_robocop_goto_as.own_path import expect_own
 from aro_robocop_goto_as.process.start import typed
 from robocop_hosting.workspace import places
 
@@ -19,6 +21,7 @@ from .errors import GradingSetupError
 SKELETON = Path(__file__).resolve().parent / "skeleton"
 SUFFIX = ".in"  # hides the files from rosrun and roslaunch, which search this whole package
 IMAGE = "@IMAGE@"  # in the files of the folders .NAME, which are for GitHub: stands for the container image
+SEED = "@SEED@"  # in run_autograder: what students can't see
 GRADESCOPE = ".gradescope"  # the folder of what is for Gradescope
 # What an installation of this package needs, besides README, docs and tests.
 INSTALLED = "action cfg compat config install launch msg rviz scripts src srv urdf worlds".split()
@@ -27,9 +30,8 @@ IMAGE_NAME = r"[a-z0-9][A-Za-z0-9._/:@-]*"
 
 
 def make(folder: Path, image: Optional[str] = None) -> None:
-    """Copy the skeleton to `folder`, which must not exist yet, with GitHub's files if a container image is given."""
-    if folder.exists():
-        raise GradingSetupError(f"{folder} exists already; choose a new name")
+    """Copy the skeleton to `folder`, which is new or empty, with GitHub's files if a container image is given."""
+    expect_own(folder)
     if image is not None and not re.fullmatch(IMAGE_NAME, image):
         raise GradingSetupError(f"{image!r} is not the name of a container image: expected NAME or SERVER/NAME:TAG")
     for path in sorted(SKELETON.rglob(f"*{SUFFIX}")):
@@ -47,10 +49,12 @@ def make(folder: Path, image: Optional[str] = None) -> None:
 
 
 def make_autograder(share: Path, path: Path) -> None:
-    """Write Gradescope's zip: setup.sh and run_autograder, and this package for machines that do not have it."""
+    """Write Gradescope's zip: setup.sh, run_autograder with a random seed, and this package for machines without it."""
+    seed = str(random.randint(1, 99_999))
     with zipfile.ZipFile(path, "x", zipfile.ZIP_DEFLATED) as archive:
         for script in sorted((SKELETON / GRADESCOPE).glob(f"*{SUFFIX}")):
-            archive.write(script, script.with_suffix("").name)
+            member = zipfile.ZipInfo.from_file(script, script.with_suffix("").name)
+            archive.writestr(member, script.read_text(encoding="utf-8").replace(SEED, seed))
         for name in INSTALLED:
             for file in sorted([share / name, *(share / name).rglob("*")]):
                 if file.is_file() and "__pycache__" not in file.parts:

@@ -20,12 +20,12 @@ from .errors import UngradableError
 from .faults import changed_sources
 from .packages import provide
 from .plan import AGAIN, Plan
-from .sandbox.bubblewrap import OWN_ENVIRONMENT, Sandbox
+from .sandbox.bubblewrap import AGENT, OWN_ENVIRONMENT, Sandbox
 from .sandbox.build import public
 from .sandbox.guard import Guard, kernel_kills
 from .sandbox.limits import MAX_CPU_TIME, MAX_SESSION_MEMORY
 from .session.job import Job
-from .submission import AGENT, Script, Submission
+from .submission import Script, Submission
 
 SESSION = "robocop_grading.session.main"
 Progress = Callable[[str, str], None]  # part, scenario

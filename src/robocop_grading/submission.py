@@ -35,10 +35,9 @@ from .advice import advice, next_todo
 from .errors import GradingError
 from .files.exports import SEVERAL, holds_class
 from .new import SKELETON, make
-from .sandbox.bubblewrap import Sandbox, expect_private
+from .sandbox.bubblewrap import AGENT, Sandbox, expect_private
 from .sandbox.build import build, runner_in
 
-AGENT = Path(__file__).resolve().parent / "agent"
 CHANNEL = "CHANNEL"  # stands for the argument with which the agent reaches the grader
 
 

@@ -19,7 +19,6 @@ from robocop_grading.cli import INTERRUPTED
 from robocop_grading.errors import GradingError
 from robocop_grading.grades import CheckOutcome
 from robocop_grading.plan_file import load
-from robocop_grading.sandbox import bubblewrap as sandbox
 from robocop_grading.submission import prepare_submission
 
 SOME_WRONG = ("bridge_never_cancels",)
@@ -186,13 +185,6 @@ def test_what_can_not_work_is_refused_before_anything_starts(program, arguments,
     done = command(program, *arguments)
     assert done.returncode == (4 if arguments[0] in ("/", "/usr/bin/env") and not of_class else 2)
     assert words in done.stderr and done.stderr.count("\n") == 1
-
-
-def test_without_bubblewrap_grading_is_refused_unless_unsafe_is_requested(tmp_path, monkeypatch):
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(GradingError, match="bubblewrap is not installed; --unsafe runs the submission without it"):
-        sandbox.open_sandbox(False)
-    assert sandbox.open_sandbox(True) is None
 
 
 def test_links_in_a_circle_are_refused(tmp_path):

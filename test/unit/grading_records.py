@@ -4,7 +4,7 @@ import math
 import tempfile
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, List
+from typing import Any, List, Optional
 
 from support import ROOT
 
@@ -83,13 +83,13 @@ def judged(name: str, part: str, points: float, cause: str = "", extra: bool = F
     return CheckResult(name, part, "", outcome, points, 1.0, extra, failure=failure, follows=follows)
 
 
-def keep(results: Results, name: str, points: float, cause: str = "", follows: str = "") -> None:
+def keep(results: Results, name: str, cause: str = "", follows: str = "", digest: Optional[str] = None) -> None:
     """Store the report of a hand-in with one check, as a worker does."""
-    keep_grade(results, Grade(name, (judged("cancel", "server", points, cause, follows=follows),)))
+    keep_grade(results, Grade(name, (judged("cancel", "server", 0.2, cause, follows=follows),)), digest)
 
 
-def keep_grade(results: Results, grade: Grade) -> None:
+def keep_grade(results: Results, grade: Grade, digest: Optional[str] = None) -> None:
     """Store the report of a grade."""
     with tempfile.TemporaryDirectory() as folder:
         write(grade, PLAN, {}, Path(folder))
-        results.keep(grade.name, f"digest of {grade.name}", Path(folder), 3.0)
+        results.keep(grade.name, f"digest of {grade.name}" if digest is None else digest, Path(folder), 3.0)

@@ -76,14 +76,16 @@ def run_step(step, folder, docker):
     return done, {name: path.read_text() if path.exists() else "" for name, path in files.items()}
 
 
-def test_workflow_grades_the_repository_in_the_image_and_fails_with_it(package, tmp_path):
+def test_workflow_grades_the_repository_in_the_image_and_fails_with_it(package, tmp_path, monkeypatch):
     grade = next(step for step in steps(package) if step.get("name") == "Grade")
+    monkeypatch.setenv("GITHUB_SHA", "0000a" + 35 * "0")
     done, _ = run_step(grade, tmp_path, f'printf "%s\\n" "$@" >{tmp_path}/arguments; echo 3 of 8 points; exit 1')
     assert (done.returncode, done.stdout) == (1, "3 of 8 points\n")
     arguments = (tmp_path / "arguments").read_text().splitlines()
     assert f"{tmp_path}/repository:/submissions/repository:ro" in arguments
     command, path, *options = arguments[arguments.index(IMAGE) + 1 :]
     assert (command, path) == ("grade", "/submissions/repository")
+    assert options[options.index("--seed") + 1] == "11", "of the commit: nobody knows it before the push"
     shown = robocop("help").stdout
     assert all(option in shown for option in options if option.startswith("--"))
 

@@ -373,7 +373,19 @@ def test_a_build_takes_the_workspace_away_from_nothing_that_runs(quick, user):
     action.write_text("two")
     assert quick("shell", "true").returncode == 0
     assert list(state.glob("ws.*")) == [(state / "workspace").resolve()], "the last build removes what nobody uses"
+    (state / "reports" / "lab").mkdir(parents=True)
+    assert f"the reports of gradings stay in {state}\n" in quick("clean").stderr
+    assert list(state.rglob("*")) == [state / "reports", state / "reports" / "lab"]
+    shutil.rmtree(state / "reports")
     assert quick("clean").returncode == 0 and not state.exists()
+
+
+def test_what_root_installs_and_builds_can_be_read_by_its_submissions_whatever_its_umask_is(quick, checkout):
+    command = f"umask 077; exec {checkout.parent}/quick/robocop shell sh -c umask"
+    done = subprocess.run(
+        ["sh", "-c", command], env=environment(), capture_output=True, text=True, timeout=SETUP_TIMEOUT
+    )
+    assert done.stdout == ("0022\n" if os.geteuid() == 0 else "0077\n"), done.stderr
 
 
 def test_run_is_no_obstacle_to_its_own_set_up(quick, checkout):

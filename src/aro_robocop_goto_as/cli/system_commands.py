@@ -6,10 +6,12 @@ import os
 import re
 import sys
 import time
+from pathlib import Path
 from typing import List, NoReturn, Sequence, Tuple
 
 from ..launch_arguments import TRUE, LaunchArguments, with_absolute_path
 from ..names import ACTION, ACTION_TYPE, PACKAGE, SIMULATOR, absolute, robocop
+from ..own_path import expect_own
 from ..probes import master, settings, x_display
 from . import program
 from .program import REPLAY, RUN, SIM, refuse, say
@@ -137,8 +139,8 @@ def record(arguments: List[str]) -> None:
         refuse(f"record: expected one file, got {' '.join(arguments)}")
     bag = arguments[0] if arguments else time.strftime("robocop_%Y-%m-%d_%H-%M-%S.bag")
     bag += "" if bag.endswith(".bag") else ".bag"
-    if os.path.exists(bag):
-        refuse(f"record: {bag} exists; give another name")
+    for path in (bag, f"{bag}.active"):  # the second is what rosbag leaves if it is killed
+        expect_own(Path(path))
     folder = os.path.dirname(os.path.abspath(bag))
     if not (os.path.isdir(folder) and os.access(folder, os.W_OK)):
         refuse(f"record: {folder} is not a folder in which a file can be created")

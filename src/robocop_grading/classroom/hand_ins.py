@@ -9,24 +9,25 @@ from aro_robocop_goto_as.errors import RobocopError
 from ..errors import GradingError, GradingSetupError
 from ..files import unpacking
 from ..files.archives import Unpacked, is_archive
-from ..files.exports import EXPECTED, METADATA, visible
+from ..files.exports import EXPECTED, METADATA, ONLINE_TEXT, hand_in_of, parts_of, visible
 
 
 def collect(folder: Path, reserved: Collection[str] = ()) -> Tuple[Dict[str, str], List[str]]:
     """The digests of hand-ins by their names, sorted; a hand-in that can't be read has an empty digest.
 
-    Every entry that is not hidden is a hand-in, except files that are `reserved` or made by the platform. The second
-    value has the names of these files. GradingSetupError if there is no hand-in.
+    Every entry that is not hidden is a hand-in, or a part of one, except files that are `reserved` or made by the
+    platform. The second value has the names of these files. GradingSetupError if there is no hand-in.
     """
     hand_ins: Dict[str, str] = {}
     others = []
     for path in visible(folder):
-        if path.name in (*reserved, METADATA) and path.is_file():
+        name = hand_in_of(path.name)
+        if (path.name in (*reserved, METADATA) and path.is_file()) or ONLINE_TEXT in path.name:
             others.append(path.name)
-        else:
-            hand_ins[path.name] = ""
+        elif name not in hand_ins:
+            hand_ins[name] = ""
             with contextlib.suppress(RobocopError):  # its row says why
-                hand_ins[path.name] = unpacked(path).digest
+                hand_ins[name] = unpacked(folder / name).digest
     if not hand_ins:
         raise GradingSetupError(f"{folder}: no hand-ins: expected {EXPECTED} for each")
     return hand_ins, others
@@ -34,8 +35,10 @@ def collect(folder: Path, reserved: Collection[str] = ()) -> Tuple[Dict[str, str
 
 def unpacked(path: Path) -> Unpacked:
     """The files of a hand-in; GradingError if the hand-in can't be graded, or read."""
+    parts = parts_of(path)
+    is_link = any(it.is_symlink() for it in (path, *parts.values()))
     is_file = path.is_file() and (path.suffix.lower() == ".py" or is_archive(path.name))
-    if path.is_symlink() or not (path.is_dir() or is_file):
-        kind = "a link" if path.is_symlink() else f"a {path.suffix} file" if path.suffix else "a file without a suffix"
+    if is_link or not (parts or path.is_dir() or is_file):
+        kind = "a link" if is_link else f"a {path.suffix} file" if path.suffix else "a file without a suffix"
         raise GradingError(f"{kind}: expected {EXPECTED}")
-    return unpacking.unpack(path)
+    return unpacking.unpack(path, parts)

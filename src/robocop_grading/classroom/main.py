@@ -2,7 +2,6 @@
 
 import argparse
 import contextlib
-import hashlib
 import os
 import random
 import sys
@@ -13,6 +12,7 @@ from typing import Callable, Collection, Dict, List, Mapping, Optional, Sequence
 from xml.etree import ElementTree
 
 from aro_robocop_goto_as.errors import RobocopError
+from aro_robocop_goto_as.own_path import expect_own
 from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
@@ -22,24 +22,26 @@ from robocop_hosting.workspace import exclusive, places
 
 from ..cli import INTERRUPTED, WRONG_USE
 from ..errors import GradingSetupError
-from ..files.exports import class_folder, people
+from ..files.exports import class_folder, hand_in_of, people
 from ..plan import Plan
 from ..plan_file import load
 from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import expect_private, open_sandbox
-from ..scenarios import MAX_SEED, MIDDLE
+from ..scenarios import MAX_SEED
 from ..submission import lab_environment
 from ..texts import printable_lines, shortened
 from .hand_ins import collect
-from .results import WAITING, Results, StoredGrade, page, seed_of, summary, write_atomically
+from .results import WAITING, Results, StoredGrade, page, summary, write_atomically
 from .summary import Summary, pace
 from .table import one_line, table
 from .worker import work
 
 CSV, HTML = "grades.csv", "index.html"
+STAMP, PLAN = ".robocop_class", ".plan.yaml"  # in the folder of the results: the seed, and a copy of the plan
 WORKERS_LOG = ".workers.log"  # in the folder of the results
 PERIOD = 5.0  # [s, wall] after which the table and the overview are written anew, at the earliest
 MAX_LINE = 300  # characters of a hand-in's problems on the terminal
+NEW_POINTS = "the points have changed: the table and the overview have the new ones, reports the old ones until --again"
 AGAIN = "also grade these hand-ins, or all, if no name follows, that have a result"
 CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
 
@@ -112,7 +114,8 @@ class Gradebook:
         results, folder = [self.done[name] for name in sorted(self.done)], self.results.folder
         write_atomically(folder / CSV, table(results, self.plan, self.problems, self._people))
         waiting = {name: self.problems.get(name, WAITING) for name in self.waiting}
-        write_atomically(folder / HTML, page(self.folder.name, results, self.plan, waiting, running, self.pace))
+        html = page(self.folder.name, results, self.plan, waiting, running, self.pace, self._people)
+        write_atomically(folder / HTML, html)
         self._next_write = time.monotonic() + PERIOD
 
 
@@ -122,8 +125,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument(
         "folder", metavar="DIR", help="contains a folder, zip or tar archive, or Python file per hand-in"
     )
-    parser.add_argument("--report", metavar="DIR", help="folder of the results (default: .robocop/classes/NAME)")
-    parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
+    parser.add_argument("--report", metavar="DIR", help="folder of the results (default: DIR_results)")
+    parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: of the results so far)")
     parser.add_argument("--seed", type=int, metavar="N", help=CLASS_SEED)
     parser.add_argument("--workers", type=int, metavar="N", help="hand-ins at once (default: one a core)")
     parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")
@@ -141,24 +144,29 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
     if args.scheduler and not args.scheduler.startswith("tls://"):
         # Anyone who can reach the port of another one can run any code on its workers, with their user's rights.
         raise GradingSetupError(f"--scheduler {args.scheduler}: expected tls://HOST:PORT, see docs/grading.md")
-    results_folder = Path(args.report).resolve() if args.report else state / "classes" / folder.name
-    plan = load(Path(args.plan) if args.plan else share / "config" / "grading.yaml", args.seed or MIDDLE)
-    digest = hashlib.sha256(plan.path.read_bytes()).hexdigest()
-    out = make_report_folder(results_folder)
+    out = Path(os.path.realpath(args.report or f"{folder}_results"))
     if not args.unsafe:
         expect_private(folder)
+    expect_own(out, STAMP, folder)
+    class_plan(args, out, share)
     given, folder = folder, class_folder(folder, (CSV, HTML))
     if folder != given:
         print(f"{one_line(str(folder))} is the class: nothing else is in {one_line(str(given))}", flush=True)
     hand_ins = _hand_ins(folder)
     version = ElementTree.parse(share / "package.xml").findtext("version")
+    make_report_folder(out, STAMP)
     with scratch_folder(), exclusive(out / ".run"):
-        seed = class_seed(args.seed, out)  # now, as a grading that ran until now may have drawn one
-        plan = load(plan.path, seed)
-        results = Results(out, {"plan": digest, "seed": seed, "grader": version})
+        plan = class_plan(args, out, share)  # now, as a grading that ran until now may have drawn a seed
+        results = Results(out, plan, version or "")
+        text = plan.path.read_text(encoding="utf-8")
+        new_points = (out / PLAN).is_file() and (out / PLAN).read_text(encoding="utf-8") != text
         gradebook = Gradebook(folder, results, plan, hand_ins, to_regrade(args.again, hand_ins))
+        write_atomically(out / STAMP, f"{plan.seed}\n")
+        write_atomically(out / PLAN, text)
         print(f"{gradebook.count} handed in, {len(gradebook.done)} of them already graded", flush=True)
-        print(f"scenarios: seed {seed}", flush=True)
+        print(f"scenarios: seed {plan.seed}", flush=True)
+        if new_points and gradebook.done:
+            print(NEW_POINTS, flush=True)
         if not args.scheduler:
             open_sandbox(args.unsafe)
             lab_environment(share, state)
@@ -170,8 +178,6 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
 def _hand_ins(folder: Path) -> Dict[str, str]:
     """What the folder has, by name; what is no hand-in is printed."""
     hand_ins, others = collect(folder, (CSV, HTML))
-    for name in hand_ins.keys() & {CSV, HTML}:
-        raise GradingSetupError(f"{folder / name}: the results contain a file of this name; rename the hand-in")
     for name in others:
         print(f"ignored: {one_line(name)}, which is no hand-in", flush=True)
     return hand_ins
@@ -201,16 +207,23 @@ def main() -> None:
 
 def to_regrade(again: Optional[Sequence[str]], hand_ins: Collection[str]) -> Set[str]:
     """The names of the hand-ins to be graded again, all if no name is given; GradingSetupError for an unknown name."""
-    names = hand_ins if again is not None and not again else [Path(name).name for name in again or ()]
+    names = hand_ins if again is not None and not again else [hand_in_of(Path(name).name) for name in again or ()]
     for name in {*names} - {*hand_ins}:
         raise GradingSetupError(f"--again {name}: no hand-in of this name{did_you_mean(name, hand_ins)}")
     return {*names}
 
 
-def class_seed(given: Optional[int], results: Path) -> int:
-    """The given seed, else the seed of the results so far, else a random seed; 0 is a seed, too."""
-    seeds = (given, seed_of(results), random.randint(1, MAX_SEED))
-    return next(seed for seed in seeds if seed is not None)
+def class_plan(args: argparse.Namespace, out: Path, share: Path) -> Plan:
+    """The given plan and seed, else those of the results so far; GradingSetupError if other outcomes would follow."""
+    kept = out / PLAN
+    before = load(kept, int((out / STAMP).read_text())) if kept.is_file() else None
+    seeds = (args.seed, before.seed if before else None, random.randint(1, MAX_SEED))
+    path = Path(args.plan) if args.plan else kept if before else share / "config" / "grading.yaml"
+    plan = load(path, next(seed for seed in seeds if seed is not None))
+    if before and before.outcomes != plan.outcomes and args.again != []:
+        told = "another one may differ in points only, unless --again without names grades everybody with it"
+        raise GradingSetupError(f"{out} has the results of the plan {kept} and seed {before.seed}: {told}")
+    return plan
 
 
 def grade(gradebook: Gradebook, scheduler: str, workers: int, task: Callable[[Path], None]) -> None:

@@ -1,21 +1,23 @@
 """The results of a class: a folder per hand-in, so that an interrupted run can be continued, and an overview."""
 
 import collections
-import contextlib
 import json
 import os
 import shutil
 import tempfile
 from dataclasses import dataclass, fields
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
 
+from aro_robocop_goto_as.own_path import expect_own
 from robocop_hosting import tree
 
 from ..checks import Failed
 from ..checks.verdict import without_figures
+from ..files.exports import Person
 from ..grades import CheckOutcome, CheckResult, Grade
-from ..plan import PARTS, Plan, total
+from ..plan import PARTS, CheckPlan, Plan, total
 from ..report.write import render
 from .summary import Summary
 
@@ -51,41 +53,35 @@ class StoredGrade(Grade):
         return [known.get(check.name, "") for check in plan.checks]
 
 
-def seed_of(folder: Path) -> Optional[int]:
-    """The seed with which the hand-ins in a folder of results were graded, if there are any."""
-    for stamp in sorted(folder.glob(f"*/{STAMP}")):
-        with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
-            return int(json.loads(stamp.read_text())["made_from"]["seed"])
-    return None
-
-
 class Results:
-    """The folder of results; `made_with` identifies the plan, its seed and the grader's version."""
+    """The folder of results that were made with a plan, its seed and a version of the grader."""
 
-    def __init__(self, folder: Path, made_with: Mapping[str, Any]) -> None:
-        self.folder = folder
-        self._made_with = dict(made_with)
+    def __init__(self, folder: Path, plan: Plan, version: str = "") -> None:
+        self.folder, self._version, self._outcomes = folder, version, plan.outcomes
+        self._checks = {check.name: check for check in plan.checks}
         folder.mkdir(parents=True, exist_ok=True)
         for unfinished in folder.glob(".new-*"):  # left by an interrupted run
             tree.remove(unfinished)
 
     def has(self, name: str, digest: str) -> bool:
-        """Return whether a hand-in was graded with its present content, plan and grader."""
+        """Return whether a hand-in was graded with its present content, plan (but for points) and grader."""
         try:
             stamp = json.loads((self.folder / name / STAMP).read_text())
         except (OSError, ValueError):
             return False
         return bool(stamp.get("made_from") == self._from(digest))
 
-    def _from(self, digest: str) -> Dict[str, Any]:
-        return {**self._made_with, "digest": digest}
+    def _from(self, digest: str) -> Dict[str, str]:
+        return {"plan": self._outcomes, "grader": self._version, "digest": digest}
 
     def keep(self, name: str, digest: str, report: Path, seconds: float) -> None:
         """Store the report in a folder; a concurrent reader sees the old one or the new one, never a mixture.
 
         For a moment between two renames, a reader sees none.
         """
-        new, final = Path(tempfile.mkdtemp(prefix=".new-", dir=self.folder)), self.folder / name
+        final = self.folder / name
+        expect_own(final, STAMP)
+        new = Path(tempfile.mkdtemp(prefix=".new-", dir=self.folder))
         new.chmod(0o755)
         shutil.copytree(report, new, dirs_exist_ok=True)
         stamp = {"made_from": self._from(digest), "seconds": round(seconds, 1)}
@@ -97,18 +93,21 @@ class Results:
         tree.remove(old)
 
     def read(self, name: str) -> StoredGrade:
-        """The result that is stored for a hand-in."""
+        """The result that is stored for a hand-in, with the plan's points."""
         folder = self.folder / name
         raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / STAMP).read_text())
-        checks = [_check(it) for it in raw["checks"]]
+        checks = [_check(it, self._checks[it["name"]]) for it in raw["checks"]]
         problems, notes = (tuple(raw.get(key, ())) for key in ("problems", "notes"))
         return StoredGrade(name, tuple(checks), problems, notes, seconds=stamp["seconds"])
 
 
-def _check(raw: Mapping[str, Any]) -> CheckResult:
-    """A check's result as report.json has it."""
+def _check(raw: Mapping[str, Any], planned: CheckPlan) -> CheckResult:
+    """A check's result as report.json has it, but with the points of today's plan."""
+    outcome = CheckOutcome(raw["outcome"])
+    points = planned.points if outcome is CheckOutcome.PASSED else 0.0
     failed = raw["failure"] and Failed(*(raw["failure"][it] for it in ("expected", "seen", "time", "cause")))
-    values = {**raw, "outcome": CheckOutcome(raw["outcome"]), "failure": failed, "points_available": raw["of"]}
+    values: Dict[str, Any] = {**raw, "outcome": outcome, "failure": failed, "extra": planned.extra, "points": points}
+    values["points_available"] = planned.points
     return CheckResult(**{it.name: values[it.name] for it in fields(CheckResult)})
 
 
@@ -132,6 +131,7 @@ def page(
     waiting: Mapping[str, str],
     running: bool,
     pace: str = "",
+    people: Mapping[str, Person] = MappingProxyType({}),
 ) -> str:
     """The overview; `waiting` maps the names that have no result yet to the reason, `pace` says how fast it goes on."""
     return render(
@@ -144,6 +144,7 @@ def page(
         running=running,
         figures=summary(results, plan, sum(why != WAITING for why in waiting.values())),
         pace=pace,
+        full_names={name: person.full_name for name, person in people.items()},
         refresh=round(REFRESH + REFRESH_EACH * len(results)),
         shown=SHOWN,
         most=MAX_SHOWN,

@@ -11,7 +11,8 @@ from ..plan import PARTS, Plan
 from ..texts import printable, shortened
 from .results import StoredGrade
 
-IMPORTED = ("Identifier", "Full name", "Email", "SID", "Grade")  # Moodle's grading worksheet, Gradescope's people
+# Moodle's grading worksheet, whose last column is "-" where there is no grade yet; Gradescope's people.
+IMPORTED = ("Identifier", "Full name", "Email", "SID", "Grade", "Last modified (grade)")
 # A spreadsheet treats text that starts with one of these as a formula; the last four are full-width characters.
 FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 MAX_CELL = 2_000  # characters of a cell
@@ -41,7 +42,7 @@ def table(
             of_parts = [result.points_of(part) for part in PARTS]
             shown = [CheckOutcome.NOT_HANDED_IN.value if number is None else number for number in of_parts]
             points = [result.points, plan.points, result.extra, *shown]
-        who = [*map(_plain, people.get(result.name, Person())), points[0]] if people else []
+        who = [*map(_plain, people.get(result.name, Person())), points[0], "-"] if people else []
         said = [_plain(" | ".join(texts)) for texts in (result.problems, result.notes)]
         rows.writerow([_plain(result.name), *who, *points, said[0], *result.outcomes(plan), said[1]])
     return text.getvalue()

@@ -40,7 +40,7 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
             handed_in.write(top / "hand_in" / path.name)
             submission = prepare_submission(str(top / "hand_in" / path.name), share, state, top / "workshop", sandbox)
             submission = replace(submission, name=name, notes=[*submission.notes, *notes])
-            grade(Runner(plan, state, sandbox), submission, report, results.folder / path.name)
+            grade(Runner(plan, state, sandbox), submission, report, moves=True)
         except UngradableError:
             raise
         except Exception as error:  # a hand-in that breaks the grader affects only its own row

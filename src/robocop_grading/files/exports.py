@@ -16,7 +16,8 @@ from ..errors import GradingSetupError
 from .archives import LEFT_OUT, is_archive
 
 METADATA = "submission_metadata.yml"  # written by Gradescope into what it exports
-MOODLE = re.compile(r"(.+)_(\d+)_assignsubmission_[a-z]+(_.*)?")  # full name, number of the participant
+MOODLE = re.compile(r"((.+)_(\d+))_assignsubmission_[a-z]+_?((?!\.).*)")  # full name, number of the participant, file
+ONLINE_TEXT = "_assignsubmission_onlinetext"  # what somebody has typed in Moodle, beside the files
 GRADESCOPE = re.compile(r"submission_\d+")
 SERVERS = re.compile(r"robocop_goto_as.*\.py")
 EXPECTED = "a folder, a zip or tar archive, or a Python file"
@@ -35,6 +36,18 @@ class Person(NamedTuple):
 def visible(folder: Path) -> List[Path]:
     """The entries of a folder that somebody may have handed in, sorted."""
     return sorted(path for path in folder.iterdir() if not path.name.startswith(".") and path.name != "__MACOSX")
+
+
+def hand_in_of(entry: str) -> str:
+    """The name of the hand-in to which an entry of a class belongs: several entries may be of one participant."""
+    match = MOODLE.fullmatch(entry)
+    return match[1] if match else entry
+
+
+def parts_of(hand_in: Path) -> Dict[str, Path]:
+    """The entries of one participant in Moodle, by the names of their files; a folder's name is empty."""
+    matches = ((MOODLE.fullmatch(path.name), path) for path in visible(hand_in.parent) if ONLINE_TEXT not in path.name)
+    return {match[4]: path for match, path in matches if match and match[1] == hand_in.name}
 
 
 def holds_class(folder: Path) -> bool:
@@ -86,12 +99,12 @@ def _looks_like_a_hand_in(path: Path) -> bool:
 
 
 def people(folder: Path) -> Dict[str, Person]:
-    """Who handed in each entry of a class's folder, by its name, as far as the platform says it.
+    """Who handed in each hand-in of a class's folder, by its name, as far as the platform says it.
 
     GradingSetupError if Gradescope's file can't be read.
     """
-    matches = {path.name: MOODLE.fullmatch(path.name) for path in visible(folder)}
-    moodle = {name: Person(f"Participant {match[2]}", match[1]) for name, match in matches.items() if match}
+    matches = filter(None, (MOODLE.fullmatch(path.name) for path in visible(folder)))
+    moodle = {match[1]: Person(f"Participant {match[3]}", match[2]) for match in matches}
     return {**moodle, **_gradescope(folder / METADATA)}
 
 

@@ -5,7 +5,8 @@ import os
 import re
 import stat
 from pathlib import Path, PurePosixPath
-from typing import Dict, List
+from types import MappingProxyType
+from typing import Dict, List, Mapping
 
 from robocop_hosting import tree
 
@@ -20,17 +21,24 @@ OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
 TYPES = (stat.S_IFREG, stat.S_IFDIR, stat.S_IFLNK)
 
 
-def unpack(path: Path) -> Unpacked:
-    """Unpack a file, archive or folder; GradingError if it can't be read, or has nothing to grade."""
+def unpack(path: Path, parts: Mapping[str, Path] = MappingProxyType({})) -> Unpacked:
+    """Unpack a file, archive or folder; GradingError if it can't be read, or has nothing to grade.
+
+    With `parts`, unpack a folder that consists of these: files by their names, and the content of a folder.
+    """
     found = Unpacked()
     try:
-        if is_archive(path.name) and path.is_file():
+        if parts:
+            found.add("", Entry(FOLDER))
+            for name, part in parts.items():
+                _add_from_disk(part, found, name)
+        elif is_archive(path.name) and path.is_file():
             found.add("", Entry(FOLDER))
             with open(path, "rb") as file:
                 unpack_archive(file, found)
         else:
             _add_from_disk(path, found)
-        if path.is_dir() and not os.listdir(path):
+        if not any(it.is_file() or os.listdir(it) for it in parts.values() or [path]):
             raise GradingError("the folder is empty")
     except OSError as error:
         raise GradingError(f"can't be read: {error}") from error
@@ -47,11 +55,11 @@ def is_packed(path: Path) -> bool:
     return any(map(is_archive, names)) and not any(map(GRADED.fullmatch, names))
 
 
-def _add_from_disk(path: Path, found: Unpacked) -> None:
-    """A file or folder and everything below it; links are not followed."""
+def _add_from_disk(path: Path, found: Unpacked, top: str = "") -> None:
+    """A file or folder, called `top`, and everything below it; links are not followed."""
     below = (folder / name for folder, folders, files in tree.walk(path, LEFT_OUT) for name in [*folders, *files])
     for inner in (path, *below):
-        name, status = "" if inner == path else inner.relative_to(path).as_posix(), os.lstat(inner)
+        name, status = top if inner == path else str(PurePosixPath(top, inner.relative_to(path))), os.lstat(inner)
         mode = status.st_mode
         if stat.S_IFMT(mode) not in TYPES:
             raise GradingError(f"{name}: expected a file, folder or link")

@@ -4,10 +4,9 @@ import dataclasses
 import json
 import os
 import shlex
-import tempfile
 from functools import partial
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, Optional, Sequence
+from typing import Any, Callable, Dict, Iterator, Sequence
 from urllib.parse import quote
 
 import jinja2
@@ -29,26 +28,25 @@ LEAD = 1.0  # [s] before a failure, from where on a replay shows it
 MAX_LINES = 60  # of a node's output in the report
 
 
-def make_report_folder(folder: Path) -> Path:
-    """Create the folder unless it exists; GradingSetupError if it can't be created or written to."""
+def make_report_folder(folder: Path, stamp: str) -> Path:
+    """Create the folder unless it exists, with this file in it; GradingSetupError if that is not possible."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
+        (folder / stamp).touch()
     except OSError as error:
         raise GradingSetupError(f"the report can't be written to {folder}: {error.strerror}") from error
     return folder
 
 
 def write(
-    grade: Grade, plan: Plan, records: Records, folder: Path, place: Optional[Path] = None, all_plots: bool = False
+    grade: Grade, plan: Plan, records: Records, folder: Path, moves: bool = False, all_plots: bool = False
 ) -> None:
-    """Write all files to an existing folder that already has the bags; `place`: where the folder will be moved.
+    """Write all files to an existing folder that already has the bags; `moves`: to whoever handed in, elsewhere.
 
     `all_plots`: also of scenarios in which no check failed.
     """
     (folder / "report.json").write_text(json.dumps(as_json(grade, plan), indent=1, default=lambda kind: kind.value))
-    (folder / "results.json").write_text(json.dumps(as_gradescope(grade, plan), indent=1))
+    (folder / "results.json").write_text(json.dumps(as_gradescope(grade), indent=1))
     (folder / "classroom.json").write_text(json.dumps(as_classroom(grade), indent=1))
     (folder / faults.FILE).unlink(missing_ok=True)  # an earlier report's
     if grade.tracebacks:
@@ -56,7 +54,7 @@ def write(
     # An HTML block without empty lines, so that GitHub does not read texts of the submission as Markdown.
     summary = render("summary.html", grade=grade, marks=MARKS)
     (folder / "summary.md").write_text(summary, encoding="utf-8", errors="replace")
-    replay = partial(_replay, folder, (place or folder).resolve())
+    replay = partial(_replay, folder, moves)
     page = render(
         "report.html",
         grade=grade,
@@ -115,7 +113,7 @@ def _github_test(check: CheckResult) -> Dict[str, object]:
     }
 
 
-def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
+def as_gradescope(grade: Grade) -> Dict[str, object]:
     """The content of results.json: gradescope-autograders.readthedocs.io, section "Autograder output"."""
     tests = []
     for check in grade.checks:
@@ -129,19 +127,20 @@ def as_gradescope(grade: Grade, plan: Plan) -> Dict[str, object]:
             test["score"], test["max_score"] = check.points, 0.0 if check.extra else check.points_available
             test["status"] = "passed" if passed else "failed"
         tests.append(test)
-    output = [*map(printable_lines, (*grade.files, *grade.problems, *grade.notes)), f"scenarios: seed {plan.seed}"]
+    output = map(printable_lines, (*grade.files, *grade.problems, *grade.notes))  # no seed: students read this
     return {"score": grade.points + grade.extra, "output": "\n".join(output), "tests": tests}
 
 
 # -- report.html --
 
 
-def _replay(folder: Path, place: Path, part: str, record: Record, start: float = 0.0) -> str:
+def _replay(folder: Path, moves: bool, part: str, record: Record, start: float = 0.0) -> str:
     """The command that plays a scenario's bag from a time [s] on; nothing if there is no bag, or nothing happens."""
-    bag = f"{part}-{record.name}.bag"
-    if not (folder / bag).is_file() or not _has_something_to_see(record):
+    bag = folder.resolve() / f"{part}-{record.name}.bag"
+    if not bag.is_file() or not _has_something_to_see(record):
         return ""
-    command = f"{shlex.quote(str(ROOT / 'robocop'))} replay {shlex.quote(str(place / bag))}"
+    program, path = ("./robocop", bag.name) if moves else (str(ROOT / "robocop"), str(bag))
+    command = f"{shlex.quote(program)} replay {shlex.quote(path)}"
     return f"{command} --start {start:.1f}" if start else command
 
 

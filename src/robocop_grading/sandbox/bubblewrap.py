@@ -16,17 +16,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from ..errors import GradingError, UngradableError
+from aro_robocop_goto_as.cli.program import ROOT
+
+from ..errors import GradingError, GradingSetupError, UngradableError
 from . import limits
 
 FIRST_USER = 200_000  # uid and gid, above those in use; root would be exempt from process limits
 USERS = 100_000
+AGENT = Path(__file__).resolve().parents[1] / "agent"  # what runs in each node
 SYSTEM = "/usr /bin /sbin /lib /lib32 /lib64 /opt /etc".split()
 NAME = "student"  # of the user in the sandbox; libraries look up the current user, such as getpass and matplotlib
 OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself
 # Without these an unprivileged user's sandbox could write to the tmpfs below / and /dev without limit, and to its
 # oom_score_adj.
 SEALED = ("--remount-ro", "/", "--remount-ro", "/dev", "--remount-ro", "/proc")
+# What find prints: a file that nobody needs to read is left out.
+UNREADABLE = "-name __pycache__ -prune -o ! -type l ! -readable -print -quit".split()
 TRIAL_TIME = 600.0  # [s, wall] also on a busy machine
 # Files that docker and podman make in every container.
 CONTAINER_MARKS = ("/.dockerenv", "/run/.containerenv")
@@ -159,16 +164,17 @@ def _mounts(option: str, paths: Iterable[Path]) -> List[str]:
 
 
 def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
-    """The sandbox, or None if `unsafe`; GradingError if bubblewrap can't run, UngradableError if not in time."""
+    """The sandbox, or None if `unsafe`; GradingSetupError if it can't run, UngradableError if not in time."""
     if unsafe:
         return None
     advice = "--unsafe runs the submission without it, with all your rights"
     if shutil.which("bwrap") is None:
-        raise GradingError(f"bubblewrap is not installed; {advice}")
+        raise GradingSetupError(f"bubblewrap is not installed; {advice}")
     if importlib.util.find_spec("seccomp") is None:
-        raise GradingError(f"python3-seccomp is not installed; {advice}")
-    empty = Sandbox(())
-    trial = empty.session_command(empty.command_inside(["/bin/true"], {}, (), Path("/tmp/home")))
+        raise GradingSetupError(f"python3-seccomp is not installed; {advice}")
+    shown = [AGENT, *(path for path in reads if path.exists())]
+    find = ["/usr/bin/find", *map(str, shown), *UNREADABLE]
+    trial = Sandbox(()).session_command(Sandbox(()).command_inside(find, {}, shown, Path("/tmp/home")))
     try:
         done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL_TIME)
     except subprocess.TimeoutExpired as error:
@@ -176,5 +182,8 @@ def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
     if done.returncode != 0:
         if any(map(os.path.exists, CONTAINER_MARKS)):
             advice = f"`docker run {CONTAINER_OPTIONS}` lets it run in a container; {advice}"
-        raise GradingError(f"bubblewrap can't run here: {done.stderr.strip()}; {advice}")
+        raise GradingSetupError(f"bubblewrap can't run here: {done.stderr.strip()}; {advice}")
+    if done.stdout:
+        remedy = " ".join(map(str, ("chmod -R go+rX", ROOT, *reads)))
+        raise GradingSetupError(f"{done.stdout.strip()}: submissions run as a user who can't read it: {remedy}")
     return Sandbox(tuple(reads))

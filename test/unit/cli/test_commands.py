@@ -176,12 +176,12 @@ def test_a_recording_gets_the_ending_of_a_bag_and_never_overwrites_one(tmp_path,
     assert "--all" in words and not any(re.fullmatch(left_out, topic) for topic in recorded)
     (tmp_path / "lab.bag").write_text("")
     for arguments, reason in (
-        (["/nosuch/x.bag"], "/nosuch is not a folder in which a file can be created"),
+        (["/nosuch/x.bag"], "record: /nosuch is not a folder in which a file can be created"),
         (["lab"], "lab.bag exists; give another name"),
-        (["a", "b"], "expected one file, got a b"),
+        (["a", "b"], "record: expected one file, got a b"),
     ):
         done = robocop("record", *arguments)
-        assert (done.returncode, done.stderr) == (1, f"robocop: record: {reason}\n")
+        assert (done.returncode, done.stderr) == (1, f"robocop: {reason}\n")
 
 
 def test_record_without_a_running_system_says_what_to_start(tmp_path, monkeypatch):

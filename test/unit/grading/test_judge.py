@@ -170,7 +170,7 @@ def test_reason_why_the_server_ended_is_told_where_no_check_examines_that() -> N
 
 def test_gradescope_gets_the_points_of_each_check_and_the_total() -> None:
     grade = graded(START, RIGHT, problem="time-out")
-    report = as_gradescope(grade, PLAN)
+    report = as_gradescope(grade)
     tests = cast("list[dict[str, Any]]", report["tests"])
     assert report["score"] == pytest.approx(sum(test["score"] for test in tests))
     assert len(tests) == len(grade.checks)
@@ -181,7 +181,7 @@ def test_gradescope_gets_the_points_of_each_check_and_the_total() -> None:
 def test_extra_check_that_failed_has_no_score_on_gradescope_and_is_no_failure_on_github() -> None:
     grade = graded(Record("frame", "bridge"))
     (extra,) = [check for check in grade.checks if check.extra]
-    tests = cast("list[dict[str, Any]]", as_gradescope(grade, PLAN)["tests"])
+    tests = cast("list[dict[str, Any]]", as_gradescope(grade)["tests"])
     (shown,) = [test for test in tests if test["number"] == f"bridge.{extra.name}"]
     assert extra.outcome is not CheckOutcome.PASSED and not {"score", "max_score", "status"}.intersection(shown)
     assert extra.name not in str(as_classroom(grade))

@@ -1,6 +1,7 @@
 """What `robocop new --gradescope` writes: an autograder, run here with a stand-in for ./robocop."""
 
 import json
+import re
 import subprocess
 import zipfile
 from pathlib import Path
@@ -42,6 +43,7 @@ def autograder(tmp_path):
 # What ./robocop does where the sandbox can't run, and with nothing to grade.
 REFUSED = 'case "$*" in *--unsafe) write;; *) echo "robocop grade: bubblewrap can\'t run here: no" >&2; exit 2;; esac'
 NOTHING = 'echo "robocop grade: nothing to grade" >&2; exit 4'
+MISSING = 'echo "robocop grade: python3-seccomp is not installed" >&2; exit 2'
 NO_POINTS = {"score": 0, "output": "robocop grade: nothing to grade\n"}
 
 
@@ -52,13 +54,16 @@ NO_POINTS = {"score": 0, "output": "robocop grade: nothing to grade\n"}
         pytest.param(REFUSED, 0, RESULT, [False, True], id="without the sandbox where it cannot run, and only there"),
         pytest.param(NOTHING, 0, NO_POINTS, [False], id="no points, and the reason"),
         pytest.param("exit 3", 1, None, [False], id="nothing where the machine has no time"),
+        pytest.param(MISSING, 1, None, [False], id="nothing where something is not installed"),
+        pytest.param("write; exit 3", 1, None, [False], id="nothing where the grader failed"),
     ],
 )
 def test_gradescope_gets_the_points_or_the_reason(does, status, result, unsafe, autograder):
     done, top = autograder(does)
     path, calls = top / "results" / "results.json", (top / "calls").read_text().splitlines()
     assert done == status and (json.loads(path.read_text()) if path.exists() else None) == result
-    assert all(call.startswith(f"grade {top}/submission --report ") for call in calls)
+    expected = rf"grade {top}/submission --report \S+ --seed ([1-9]\d*)( --unsafe)?"
+    assert all(re.fullmatch(expected, call) for call in calls)
     assert [call.endswith(" --unsafe") for call in calls] == unsafe
 
 

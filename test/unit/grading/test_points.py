@@ -51,7 +51,7 @@ def test_extra_points_are_told_apart_from_the_others(checks, words, tmp_path) ->
     values = as_json(grade, PLAN)
     points, extra = sum(it.points for it in checks if not it.extra), sum(it.points for it in checks if it.extra)
     assert (values["points"], values["extra"]) == (points, extra)
-    assert as_gradescope(grade, PLAN)["score"] == points + extra, "Gradescope adds extra credit to the score"
+    assert as_gradescope(grade)["score"] == points + extra, "Gradescope adds extra credit to the score"
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_every_list_marks_extra_checks_and_adds_up_the_others_only() -> None:
         Grade("anna", (failed(FORWARDS), replace(FORWARDS, name="b"), FRAME)), {}
     )
     assert "FAILED            0 / 1     Frames are transformed. (extra)" in as_text(Grade("anna", (failed(FRAME),)), {})
-    for listed in (as_classroom(Grade("anna", (FRAME,))), as_gradescope(Grade("anna", (FRAME,)), PLAN)):
+    for listed in (as_classroom(Grade("anna", (FRAME,))), as_gradescope(Grade("anna", (FRAME,)))):
         assert "Frames are transformed. (extra)" in str(listed)
 
 

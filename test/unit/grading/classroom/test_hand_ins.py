@@ -29,6 +29,27 @@ def test_folders_and_python_files_are_hand_ins_and_whatever_else_is_there_has_th
     assert others == ["grades.csv", "submission_metadata.yml"], "this grader's and Gradescope's"
 
 
+def test_entries_of_one_participant_in_moodle_are_one_hand_in_and_online_text_is_none(tmp_path):
+    server, bridge = "robocop_goto_as.py", "robocop_rviz_goto_ac.py"
+    for file in ("Ben_2_assignsubmission_file_/lab/a.py", "Eva_3_assignsubmission_file/b.py", "Eva_3.py"):
+        (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / file).touch()
+    for name in (f"file_{server}", f"file_{bridge}", "onlinetext_onlinetext.html"):
+        (tmp_path / f"Novak Jan_1_assignsubmission_{name}").touch()
+    (tmp_path / "Ben_2_assignsubmission_onlinetext_").mkdir()
+    hand_ins, others = collect(tmp_path)
+    assert [*hand_ins] == ["Ben_2", "Eva_3.py", "Eva_3", "Novak Jan_1"] and all(hand_ins.values())
+    assert others == ["Ben_2_assignsubmission_onlinetext_", "Novak Jan_1_assignsubmission_onlinetext_onlinetext.html"]
+    assert [*unpacked(tmp_path / "Novak Jan_1").entries] == ["", server, bridge]
+    assert [*unpacked(tmp_path / "Ben_2").entries] == ["", "lab", "lab/a.py"]
+
+
+@pytest.mark.parametrize("name", ["Eva_1_assignsubmission_file_", "Eva_1_assignsubmission_file_a.py"])
+def test_part_of_a_hand_in_that_leads_elsewhere_is_refused(name, folder):
+    (folder / name).symlink_to("anna")
+    assert problem_of(folder / "Eva_1").startswith("a link: expected")
+
+
 def test_digest_depends_on_contents_but_not_on_times(folder):
     before, _ = collect(folder)
     os.utime(folder / "ben.py", (0, 0))

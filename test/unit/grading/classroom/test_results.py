@@ -4,11 +4,14 @@ import csv
 import io
 import re
 import shutil
+from dataclasses import replace
 
+import pytest
 from grading_records import PLAN, judged, keep
 from hypothesis import given
 from hypothesis import strategies as st
 
+from aro_robocop_goto_as.errors import ParameterError
 from robocop_grading.classroom.results import Results, StoredGrade, page
 from robocop_grading.classroom.table import table
 from robocop_grading.files.exports import Person
@@ -28,25 +31,34 @@ RESULTS = (
 
 
 def test_stored_result_is_valid_until_hand_in_or_plan_change(tmp_path):
-    results = Results(tmp_path, {"plan": "1"})
+    results = Results(tmp_path, PLAN)
     hand_in = "anna", "digest of anna"
     assert not results.has(*hand_in)
-    keep(results, "anna", 0.2)
+    keep(results, "anna")
     assert results.has(*hand_in)
     assert results.read("anna").points == 0.2
     assert not results.has("anna", "another")
-    assert not Results(tmp_path, {"plan": "2"}).has(*hand_in)
-    keep(results, "anna", 0.1)
-    assert results.read("anna").points == 0.1
+    assert not Results(tmp_path, replace(PLAN, seed=1)).has(*hand_in)
+    assert not Results(tmp_path, PLAN, "another version").has(*hand_in)
+    keep(results, "anna", "a mistake")
+    assert results.read("anna").points == 0.0
+
+
+def test_folder_in_the_results_that_is_none_is_not_replaced(tmp_path):
+    (tmp_path / "anna").mkdir()
+    (tmp_path / "anna" / "notes.txt").write_text("of the teacher")
+    with pytest.raises(ParameterError, match="anna has other files in it"):
+        keep(Results(tmp_path, PLAN), "anna")
+    assert [path.name for path in tmp_path.rglob("*")] == ["anna", "notes.txt"]
 
 
 def test_incomplete_result_is_ignored_and_removed(tmp_path):
-    results = Results(tmp_path, {})
-    keep(results, "anna", 0.2)
+    results = Results(tmp_path, PLAN)
+    keep(results, "anna")
     (tmp_path / "anna" / "hand_in.json").write_text("{")
     assert not results.has("anna", "digest of anna")
     shutil.copytree(tmp_path / "anna", tmp_path / ".new-anna")
-    Results(tmp_path, {})
+    Results(tmp_path, PLAN)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["anna"]
 
 
@@ -72,6 +84,7 @@ def test_table_has_what_moodle_and_gradescope_import_where_they_say_who_handed_i
     people = {"=anna": Person("Participant 7", "Anna Nováková"), "dora": Person("", "Dora", "d@example.edu", "-42")}
     rows = read(table(RESULTS, PLAN, {"dora": "a worker died"}, people))
     imported = [[row[key] for key in ("Identifier", "Full name", "Email", "SID", "Grade")] for row in rows]
+    assert {row["Last modified (grade)"] for row in rows} == {"-"}, "Moodle's importer needs this column"
     assert imported[0] == ["Participant 7", "Anna Nováková", "", "", "0.5"]
     assert imported[1:] == [["", "", "", "", "0.0"], [""] * 5, ["", "Dora", "d@example.edu", "'-42", ""]]
     assert "Grade" not in read(table(RESULTS, PLAN))[0]
@@ -99,12 +112,18 @@ def test_no_name_or_problem_controls_a_spreadsheet_whatever_separator_it_is_read
 
 
 def test_the_overview_counts_no_cause_of_a_failure_that_follows_from_another_one(tmp_path):
-    results = Results(tmp_path, {})
-    keep(results, "anna", 0.0, "a mistake")
-    keep(results, "ben", 0.0, "another mistake", follows="reaches_goal")
+    results = Results(tmp_path, PLAN)
+    keep(results, "anna", "a mistake")
+    keep(results, "ben", "another mistake", follows="reaches_goal")
     html = page("class", [results.read("anna"), results.read("ben")], PLAN, {}, running=False)
     assert "1 × a mistake" in html and "another mistake" not in html
     assert "0 of 2" in html, "of cancel, as stored"
+
+
+def test_the_overview_names_people_by_their_full_names():
+    html = page("class", RESULTS[1:], PLAN, {}, running=False, people={"ben": Person("", "Benjamin <B>")})
+    assert "<a href='ben/report.html'>Benjamin &lt;B&gt;</a><br><small>ben</small>" in html
+    assert "<a href='carl/report.html'>carl</a><td" in html
 
 
 def test_the_overview_counts_checks_and_causes_and_escapes_them():

@@ -21,7 +21,7 @@ def test_whatever_a_hand_in_makes_of_the_grader_is_its_own_row(error, folder, mo
     monkeypatch.setenv("ROBOCOP_STATE", "/nowhere")
     monkeypatch.setenv("ROBOCOP_SHARE", "/nowhere")
     (folder / "anna" / "old.rar").touch()
-    worker.work(folder / "anna", PLAN, Results(folder / "out", {}), False)
+    worker.work(folder / "anna", PLAN, Results(folder / "out", PLAN), False)
     report = json.loads((folder / "out" / "anna" / "report.json").read_text())
     assert report["checks"] == [] and type(error).__name__ in report["problems"][0]
     assert report["notes"] == ["old.rar was not unpacked: expected zip or tar"], "it may be what was meant"

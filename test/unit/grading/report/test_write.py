@@ -19,11 +19,11 @@ MOVING = replace(RIGHT, samples=tuple(replace(sample, v=0.2) for sample in RIGHT
 STUCK = changed(results=(), problem="the robot made no progress for 8 s, and the goal did not end")
 
 
-def written(folder, *records, place=None, all_plots=False):
+def written(folder, *records, moves=False, all_plots=False):
     """The report of a server that left these records."""
     by_name = {"server": {record.name: record for record in records}}
     grade = judge("<anna>", PLAN, by_name, {})
-    report.write(grade, PLAN, by_name, folder, place, all_plots)
+    report.write(grade, PLAN, by_name, folder, moves, all_plots)
     return grade, (folder / "report.html").read_text()
 
 
@@ -51,13 +51,15 @@ def test_what_follows_from_a_mistake_is_one_line_below_it(tmp_path):
     assert "failed because of it: " in mistake.consequences and "odd_scans" in mistake.consequences
 
 
-@pytest.mark.parametrize("place", [None, "/the class/anna"])
-def test_command_that_shows_a_scenario_works_from_anywhere(tmp_path, place):
+@pytest.mark.parametrize("moves", [False, True])
+def test_command_that_shows_a_scenario_works_from_anywhere_and_names_no_path_of_somebody_else(tmp_path, moves):
     (tmp_path / "server-left.bag").write_bytes(b"")
-    _, html = written(tmp_path, MOVING, place=place and Path(place))
+    _, html = written(tmp_path, MOVING, moves=moves)
     commands = [shlex.split(unescape(it)) for it in re.findall("<code>([^<]+)</code>", html)]
-    bag = str(Path(place or tmp_path, "server-left.bag"))
-    assert [command[:3] for command in commands] == [[str(Path(ROOT, "robocop")), "replay", bag]] * 2
+    program, bag = str(Path(ROOT, "robocop")), str(tmp_path / "server-left.bag")
+    expected = ["./robocop", "replay", "server-left.bag"] if moves else [program, "replay", bag]
+    assert [command[:3] for command in commands] == [expected] * 2
+    assert moves != (str(tmp_path) in html)
     assert [command[3:] for command in commands] == [["--start", "10.0"], []], "a second before the mistake"
 
 
@@ -68,7 +70,7 @@ def test_scenario_in_which_nothing_happened_is_not_replayed(tmp_path):
 
 
 def test_folder_of_the_report_is_made_with_those_above_it(tmp_path):
-    assert report.make_report_folder(tmp_path / "a" / "b").is_dir()
+    assert (report.make_report_folder(tmp_path / "a" / "b", "stamp") / "stamp").is_file()
 
 
 def test_every_report_and_the_terminal_say_which_files_were_graded(tmp_path):

@@ -1,6 +1,12 @@
-"""What of the system a program in the sandbox finds."""
+"""What of the system a program in the sandbox finds; without a sandbox nothing is graded."""
 
-from robocop_grading.sandbox.bubblewrap import NAME
+import contextlib
+import os
+
+import pytest
+
+from robocop_grading.errors import GradingSetupError
+from robocop_grading.sandbox.bubblewrap import NAME, open_sandbox
 
 
 def test_current_user_has_a_name_a_home_and_fonts(printed):
@@ -43,3 +49,21 @@ def test_the_kernel_ends_what_is_inside_first_if_memory_runs_out(printed):
         print("refused")
     """
     assert printed(code) == ["1000", "refused"]
+
+
+def test_nothing_is_graded_if_the_user_of_submissions_can_not_read_what_they_need(tmp_path):
+    (tmp_path / "installed").mkdir(mode=0o700)
+    refused = pytest.raises(GradingSetupError, match=f"^{tmp_path}/installed: .* who can't read it: chmod -R go\\+rX ")
+    with refused if os.geteuid() == 0 else contextlib.nullcontext():  # others' submissions run as themselves
+        open_sandbox(False, [tmp_path / "installed"])
+
+
+@pytest.mark.parametrize("missing", ["bubblewrap", "python3-seccomp"])
+def test_sandbox_that_is_not_installed_is_an_error_of_the_set_up(missing, tmp_path, monkeypatch):
+    if missing == "bubblewrap":
+        monkeypatch.setenv("PATH", str(tmp_path))
+    else:
+        monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    with pytest.raises(GradingSetupError, match=f"{missing} is not installed; --unsafe runs the submission without it"):
+        open_sandbox(False)
+    assert open_sandbox(True) is None
