@@ -140,7 +140,7 @@ WRONG: Tuple[Wrong, ...] = (
     _server(
         "map_frame",
         "feedback_position",
-        "position is taken in the world or map frame",
+        "pose is taken in the world or map frame",
         (
             "        self.pose = None\n",
             "        import tf2_ros\n        self.pose = None\n        self.buffer = tf2_ros.Buffer()\n"

@@ -6,7 +6,7 @@ from typing import Callable, List, Sequence, Set, Tuple
 
 from ..handout import Limits
 from ..record import ERRORS, wrapped
-from .feedback_hypotheses import ANGLE, CAUSES, FROM_ORIGIN, IN_DEGREES, POSITION, SENTENCES, UNCHANGED, Pair
+from .feedback_hypotheses import ANGLE, CAUSES, FROM_ORIGIN, IN_DEGREES, POSE_OF_START, POSITION, Cause, Pair
 
 # [m], [rad] within which a value fits a hypothesis
 TOLERANCES = Limits().position_tolerance, Limits().angle_tolerance
@@ -32,8 +32,8 @@ OTHERWISE = (
 )
 
 
-def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]]) -> Tuple[str, Set[str]]:
-    """All causes that fit the wrong and the right values of every scenario, in words and by their names.
+def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]]) -> Tuple[str, Set[Cause]]:
+    """All causes that fit the wrong and the right values of every scenario, and these in words.
 
     If no cause fits, the text says what is wrong. `scenarios`: the pairs of each scenario, and the wrong pairs among
     them.
@@ -49,29 +49,30 @@ def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence
             return f"{ERRORS[index]} is always zero: is it filled in?", set()
         cause = f"{ERRORS[index]} is always {values[0]:.2f}: recalculate it in each iteration from the newest pose"
         return cause, set()
-    names = _fitting(index, wrong, thinned, scale)
-    if UNCHANGED.intersection(names) - {"pose_of_start"}:  # a special case of it
-        names = [name for name in names if name != "pose_of_start"]
-    if not names and index == ANGLE and any(_heading_is_in_degrees(scenarios, age) for age in SAMPLES_BACK):
-        names = [IN_DEGREES]
-    return "; or: ".join(map(SENTENCES.__getitem__, names)) or _measured(index, thinned), set(names)
+    found = _fitting(index, wrong, thinned, scale)
+    if any(cause.unchanged for cause in found if cause is not POSE_OF_START):  # a special case of it
+        found = [cause for cause in found if cause is not POSE_OF_START]
+    if not found and index == ANGLE and any(_heading_is_in_degrees(scenarios, age) for age in SAMPLES_BACK):
+        found = [IN_DEGREES]
+    return "; or: ".join(cause.sentence for cause in found) or _measured(index, thinned), set(found)
 
 
-def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]], scale: float) -> List[str]:
-    """The names of the hypotheses that fit, the best one first."""
+def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]], scale: float) -> List[Cause]:
+    """The causes that fit, the best one first."""
     positions = [misses(POSITION, pairs, lambda p: p.truth[POSITION]) for pairs in scenarios]
     knows_position = all(_fits(it, POSITION, 0.5) for it in positions)
-    found: List[Tuple[float, str]] = []
-    for cause, predict in CAUSES[index]:
-        if cause == FROM_ORIGIN and knows_position:
+    found: List[Tuple[float, Cause]] = []
+    for cause in CAUSES:
+        if cause is FROM_ORIGIN and knows_position:
             continue
-        if not _fits(misses(index, wrong, predict, scale), index, MAX_UNEXPLAINED):
-            continue
-        missed = [misses(index, pairs, predict, scale) for pairs in scenarios]
-        rows = [longest(it, pairs, TOLERANCES[index]) for it, pairs in zip(missed, scenarios)]
-        if max(rows) < MAX_UNFITTED_TIME and all(_fits(it, index) for it in missed):
-            found.append((_mean(missed), cause))
-    return list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < MAX_MEAN))
+        for predict in cause.angle if index == ANGLE else cause.position:
+            if not _fits(misses(index, wrong, predict, scale), index, MAX_UNEXPLAINED):
+                continue
+            missed = [misses(index, pairs, predict, scale) for pairs in scenarios]
+            rows = [longest(it, pairs, TOLERANCES[index]) for it, pairs in zip(missed, scenarios)]
+            if max(rows) < MAX_UNFITTED_TIME and all(_fits(it, index) for it in missed) and _mean(missed) < MAX_MEAN:
+                found.append((_mean(missed), cause))
+    return list(dict.fromkeys(cause for _, cause in sorted(found, key=lambda it: it[0])))
 
 
 def _heading_is_in_degrees(scenarios: Sequence[Sequence[Pair]], age: int) -> bool:
