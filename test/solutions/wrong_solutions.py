@@ -175,7 +175,7 @@ WRONG: Tuple[Wrong, ...] = (
     _server(
         "scan_read_once",
         "stops_at_obstacle",
-        "check the distance ahead in each iteration",
+        "was not aborted when the obstacle ahead was nearer than 0.3 m",
         ("self.min_dist_ahead < 0.3", "ahead < 0.3"),
         (RATE, "        rate = rospy.Rate(10)\n        ahead = self.min_dist_ahead\n"),
     ),

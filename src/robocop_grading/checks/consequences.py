@@ -54,6 +54,11 @@ def no_state_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
     return logged(record, NO_STATE_LOGGED, failure.time)
 
 
+def not_accepted(_record: Record, _failure: Failed, earlier: Failed) -> bool:
+    """Return whether actionlib refused the states of goals that the server had not accepted."""
+    return earlier.kind is Kind.NOT_ACCEPTED
+
+
 def silent(record: Record, goal: SentGoal) -> bool:
     """Return whether the server, after it got a goal, neither moved the robot nor published anything about the goal."""
     told = [*record.feedback_of(goal), *record.results_of(goal)]
@@ -197,6 +202,9 @@ FOLLOWS = (
     ),
     Row("success_result failure_result", Kind.NO_MESSAGE, "one_ending", no_state_set),
     Row(GOAL_CHECKS, Kind.NO_RESULT, "stays_alive", died),
+    Row("cancel newer_goal", Kind.END_LATE, "stays_alive", died),
+    Row(GOAL_CHECKS, Kind.NO_RESULT, "one_ending", not_accepted),
+    Row("cancel newer_goal", Kind.END_LATE, "one_ending", not_accepted),
     Row(GOAL_CHECKS, Kind.SUCCESS_LATE, "feedback_rate", never_reported_near),
     Row(GOAL_CHECKS, Kind.TOO_FAR, "feedback_position", reported_near),
     Row(GOAL_CHECKS, Kind.SUCCEEDED, "feedback_position", reported_near),

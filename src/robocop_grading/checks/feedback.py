@@ -8,7 +8,7 @@ from typing import List, Mapping, Optional, Sequence
 from ..handout import GOAL_RADIUS, Limits
 from ..record import ERRORS, Record, SentGoal
 from .feedback_age import age_of
-from .feedback_causes import OTHERWISE, TOLERANCES, UNITS, likely_cause, longest, misses
+from .feedback_causes import TOLERANCES, UNITS, likely_cause, longest, misses
 from .feedback_hypotheses import ANGLE, POSE_TOPIC, POSITION, Pair
 from .topic_use import late, unpublished
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
@@ -122,7 +122,7 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
     if unchanged and silent:
         cause = f"The errors do not change with the robot's pose: the node subscribes to {silent}, which nobody "
         cause += "publishes; the position comes from /odom"
-    elif of_old_pose and (unchanged or cause == OTHERWISE[index]):
+    elif of_old_pose and (unchanged or not found):
         cause = of_old_pose
     elif not found:
         age = age_of([records[name] for name in names], index)

@@ -26,9 +26,9 @@ SAMPLES_BACK = range(4)  # [samples] of the pose that a message is based on
 MAX_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less than half of it
 
 
-OTHERWISE = (
-    "position_error is not the distance from the position in /odom to the goal",
-    "angle_error is not the goal's direction minus the heading, both in odom",
+DEFINITIONS = (
+    "the distance from the position in /odom to the goal",
+    "the goal's direction minus the heading, both in odom and the difference within +-pi",
 )
 
 
@@ -54,7 +54,7 @@ def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence
         found = [cause for cause in found if cause is not POSE_OF_START]
     if not found and index == ANGLE and any(_heading_is_in_degrees(scenarios, age) for age in SAMPLES_BACK):
         found = [IN_DEGREES]
-    return "; or: ".join(cause.sentence for cause in found) or _measured(index, thinned), set(found)
+    return "; or: ".join(cause.sentence for cause in found) or _measured(index, wrong[0], thinned), set(found)
 
 
 def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]], scale: float) -> List[Cause]:
@@ -93,7 +93,7 @@ def _heading_is_in_degrees(scenarios: Sequence[Sequence[Pair]], age: int) -> boo
     return len(misses) >= ENOUGH and _fits(misses, ANGLE)
 
 
-def _measured(index: int, scenarios: Sequence[Sequence[Pair]]) -> str:
+def _measured(index: int, wrong: Pair, scenarios: Sequence[Sequence[Pair]]) -> str:
     """What is wrong with values that no hypothesis explains."""
     differences = [pair.feedback.errors[index] - pair.truth[index] for pairs in scenarios for pair in pairs]
     if index == ANGLE:
@@ -108,7 +108,8 @@ def _measured(index: int, scenarios: Sequence[Sequence[Pair]]) -> str:
     steady = sum(abs(it - factor) > MAX_SPREAD * abs(factor) for it in factors) <= MAX_WRONG * len(factors)
     if steady and abs(factor - 1.0) > 2.0 * MAX_SPREAD:
         return f"{ERRORS[index]} is always {factor:.3g} times the true one: is its unit that of the handout?"
-    return OTHERWISE[index]
+    value, truth, unit = wrong.feedback.errors[index], wrong.truth[index], UNITS[index]
+    return f"{ERRORS[index]} is {value:.2f} {unit} where it has to be {truth:.2f} {unit}, {DEFINITIONS[index]}"
 
 
 def _fits(misses: Sequence[float], index: int, most: float = MAX_WRONG) -> bool:

@@ -31,6 +31,7 @@ class Kind(enum.Enum):
     NOT_RESET = "an earlier goal has left something behind"
     NO_ANSWER = "the server no longer accepts goals"
     TWO_STATES = "two terminal states"
+    NOT_ACCEPTED = "a terminal state of a goal that was not accepted"
     NO_MESSAGE = "a result without a message"
     # Motion.
     MOVES_FIRST = "motion before the errors and the distance are known"
