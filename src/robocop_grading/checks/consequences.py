@@ -5,6 +5,7 @@ from typing import Callable, NamedTuple, Optional, Sequence, TypeVar
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import Command, Feedback, Record, Sample, SentGoal
+from .endings import at_once
 from .output import NO_STATE_LOGGED, UNCAUGHT, logged
 from .verdict import Failed, Kind
 
@@ -159,9 +160,9 @@ def at_wall(_record: Record, failure: Failed, _earlier: Failed) -> bool:
     return failure.goal is not None and failure.goal.ends == "ABORTED"
 
 
-def wrong_since_a_later_goal(record: Record, failure: Failed, earlier: Failed) -> bool:
-    """Return whether the feedback is wrong from a later goal on, as a server keeps what an earlier one has set."""
-    return earlier.kind is Kind.NOT_RESET and any(failure.time > goal.time for goal in record.goals[1:])
+def of_a_goal_that_ended_at_once(record: Record, failure: Failed, earlier: Failed) -> bool:
+    """Return whether the wrong feedback is about a goal that began with what an earlier one had set."""
+    return earlier.kind is Kind.NOT_RESET and failure.goal is not None and at_once(record, failure.goal)
 
 
 class Row(NamedTuple):
@@ -191,7 +192,7 @@ FOLLOWS = (
     Row("feedback_rate", Kind.TOO_LITTLE, "no_exception", raised),
     Row("feedback_angle", Kind.WRONG_POSITION, "feedback_position"),
     Row("feedback_angle", Kind.OLD_POSE, "feedback_position", same_kind),
-    Row("feedback_position feedback_angle", None, "next_goal", wrong_since_a_later_goal),
+    Row("feedback_position feedback_angle", None, "next_goal", of_a_goal_that_ended_at_once),
     # How goals end.
     Row("only_ahead_counts", Kind.ABORTED, "stops_at_obstacle", too_early_elsewhere),
     Row(

@@ -102,7 +102,7 @@ def _wrong_state(record: Record, goal: SentGoal, status: int, wanted: int) -> st
     if told:
         return told
     if status == PREEMPTED and not _asked_to_end(record, goal, end):
-        hint = "Is is_preempt_requested() called, with its parentheses?" if _at_once(record, goal) else ""
+        hint = "Is is_preempt_requested() called, with its parentheses?" if at_once(record, goal) else ""
         if any(cancel.time < goal.time for cancel in record.cancels):
             hint = "Does a cancel request that came before this goal end it?"
         return sentences("set_preempted is called although neither a cancel request nor a newer goal has come", hint)
@@ -142,19 +142,19 @@ def success_too_far(record: Record, goal: SentGoal, limits: Limits) -> Optional[
     kind, cause = Kind.TOO_FAR, TOO_FAR
     if own and own[-1] < GOAL_RADIUS:
         cause = f"The server believes that the robot is at the goal: its own position_error is {own[-1]:.3f} m"
-    if _at_once(record, goal) and any(_took_longer(record, it) for it in record.goals if it.time < goal.time):
+    if at_once(record, goal) and any(_took_longer(record, it) for it in record.goals if it.time < goal.time):
         kind, cause = Kind.NOT_RESET, "What an earlier goal has changed is not reset when a new goal begins"
     seen = f"success {nearest:.2f} m away"
     return Failed(f"success within {GOAL_RADIUS:g} m", seen, result.time, cause, kind, goal)
 
 
-def _at_once(record: Record, goal: SentGoal) -> bool:
+def at_once(record: Record, goal: SentGoal) -> bool:
     """Return whether a goal has ended too soon to be driven to."""
     return any(result.time - goal.time < TOO_SOON for result in record.results_of(goal)[:1])
 
 
 def _took_longer(record: Record, goal: SentGoal) -> bool:
-    return bool(record.results_of(goal)) and not _at_once(record, goal)
+    return bool(record.results_of(goal)) and not at_once(record, goal)
 
 
 @check("states")

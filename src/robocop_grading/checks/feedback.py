@@ -182,4 +182,4 @@ def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Fai
         return None
     first = wrong[0]
     seen = f"{ERRORS[index]} {first.feedback.errors[index]:.2f}"
-    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, "", Kind.WRONG_ERROR)
+    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, "", Kind.WRONG_ERROR, first.goal)

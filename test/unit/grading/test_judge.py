@@ -215,6 +215,15 @@ def test_newer_goal_that_is_not_served_follows_from_the_exception_that_ended_the
     assert failures(record) == {"newer_goal": "no_exception", "no_exception": "", "stays_alive": "no_exception"}
 
 
+def test_wrong_feedback_about_a_goal_that_ends_at_once_follows_from_what_an_earlier_goal_has_left() -> None:
+    later = rec.SentGoal("h", -1.0, 0.0, 11.0, "SUCCEEDED")
+    results = (*RIGHT.results, rec.Result(11.1, "h", rec.SUCCEEDED, True, "there"))
+    kept = rec.Feedback(11.0, "h", 0.09, 0.0)
+    record = changed(name="behind", goals=(GOAL, later), results=results, feedback=(*RIGHT.feedback[::20], kept))
+    found = failures(record)
+    assert (found["next_goal"], found["feedback_position"], found["feedback_angle"]) == ("", "next_goal", "next_goal")
+
+
 def test_missing_feedback_follows_from_the_exception_that_ended_its_timer() -> None:
     printed = lines("Exception in thread Thread-6:", NO_NAME[0].text, "TypeError: tell() takes 1 argument")
     assert failures(changed(lines=printed, feedback=())) == {"no_exception": "", "feedback_rate": "no_exception"}
