@@ -170,8 +170,8 @@ def _old(record: Record, index: int) -> Optional[Failed]:
 
 def _aged(index: int, age: float) -> str:
     return (
-        f"{ERRORS[index]} in the feedback is old, by up to {age:.1f} s: calculate it from the newest pose, then publish "
-        "the feedback, both in the same iteration, and let callbacks return at once"
+        f"{ERRORS[index]} in the feedback is old, by up to {age:.1f} s: calculate it from the newest pose, then "
+        "publish the feedback, both in the same iteration, and let callbacks return at once"
     )
 
 
@@ -182,4 +182,6 @@ def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Fai
         return None
     first = wrong[0]
     seen = f"{ERRORS[index]} {first.feedback.errors[index]:.2f}"
-    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, "", Kind.WRONG_ERROR, first.goal)
+    return Failed(
+        f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, "", Kind.WRONG_ERROR, first.goal
+    )

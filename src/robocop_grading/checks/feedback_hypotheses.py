@@ -1,9 +1,10 @@
 """What a server with one mistake in its errors would report: each cause predicts the values of its feedback."""
 
+import itertools
 import math
 import re
 from dataclasses import replace
-from typing import Callable, List, NamedTuple, Tuple
+from typing import Callable, Dict, List, NamedTuple, Tuple
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 
@@ -42,6 +43,11 @@ class Pair(NamedTuple):
         return self.goal.x - self.now.x, self.goal.y - self.now.y
 
     @property
+    def yaw(self) -> float:
+        """The heading in odom [rad], within +-pi."""
+        return wrapped(self.now.yaw)
+
+    @property
     def direction(self) -> float:
         """The goal's direction in odom [rad]."""
         return math.atan2(self.way[1], self.way[0])
@@ -58,121 +64,95 @@ class Pair(NamedTuple):
 
 
 Formula = Callable[[Pair], float]
+Errors = Callable[[Pair], Tuple[float, float]]
 
 
 class Cause(NamedTuple):
-    """A mistake in words, and the values of position_error and of angle_error to which it may lead.
+    """A mistake in words, and the position_error or angle_error to which it leads.
 
     `of_position`: the robot's or the goal's position is wrong, which explains both errors. `unchanged`: the errors are
     those of a pose that does not change.
     """
 
     sentence: str
-    position: Tuple[Formula, ...] = ()
-    angle: Tuple[Formula, ...] = ()
+    index: int
+    formula: Formula
     of_position: bool = False
     unchanged: bool = False
 
 
-def _misplaced(sentence: str, *poses: Callable[[Pair], Tuple[float, float]], unchanged: bool = False) -> Cause:
-    """A pose of the goal or the robot that is mistaken for another, which leads to these errors."""
+def _misplaced(sentence: str, *poses: Errors, unchanged: bool = False) -> List[Cause]:
+    """Of poses of the goal or the robot that are mistaken for others, each of which leads to both errors."""
 
-    def formulas(index: int) -> Tuple[Formula, ...]:
-        return tuple(lambda pair, of=of: of(pair)[index] for of in poses)
+    def error(index: int, errors: Errors) -> Formula:
+        return lambda pair: errors(pair)[index]
 
-    return Cause(sentence, formulas(POSITION), formulas(ANGLE), of_position=True, unchanged=unchanged)
+    both = itertools.product((POSITION, ANGLE), poses)
+    return [Cause(sentence, index, error(index, errors), True, unchanged) for index, errors in both]
 
 
-POSE_OF_START = _misplaced(
+POSE_OF_START = (
     "The errors stay those of where the robot is when the goal comes: is the newest pose taken in each iteration, and "
-    "does the callback of /odom store each pose at once?",
-    lambda p: p.goal.errors_at(p.start),
-    unchanged=True,
+    "does the callback of /odom store each pose at once?"
 )
-FROM_ORIGIN = Cause(
-    "The goal's direction is that from odom's origin: is the robot's position left out, or read only at the start?",
-    angle=(lambda p: math.atan2(p.goal.y, p.goal.x) - p.now.yaw,),
-    of_position=True,
+OF_ORIGIN = (
+    "position_error is the goal's distance from odom's origin: is the robot's position left out, read only at the "
+    "start, or not stored at once by the callback of /odom?"
 )
-IN_DEGREES = Cause("The heading is in degrees, and is subtracted from an angle in radians")  # told by its changes
-CAUSES = (
-    _misplaced("The goal's x and y are swapped", lambda p: replace(p.goal, x=p.goal.y, y=p.goal.x).errors_at(p.now)),
-    POSE_OF_START,
-    _misplaced(
+DIRECTION_ONCE = (
+    "The goal's direction is that from where the robot is when the goal comes, or from odom's origin: calculate it in "
+    "each iteration from the newest position"
+)
+NO_HEADING = (
+    "angle_error is the goal's direction in odom, as if the heading stayed 0: is the heading left out, read only at "
+    "the start, calculated wrongly from the quaternion, whose order is x, y, z, w, or not stored at once by the "
+    "callback of /odom?"
+)
+OF_POSITION: Dict[str, Formula] = {
+    "position_error is the squared distance: the square root is missing": lambda p: sum(d * d for d in p.way),
+    "position_error is |dx|: is dy left out?": lambda p: abs(p.way[0]),
+    "position_error is |dy|: is dx left out?": lambda p: abs(p.way[1]),
+    "position_error is the angle error: are the two swapped?": lambda p: p.truth[ANGLE],
+}
+OF_ANGLE: Dict[str, Formula] = {
+    "angle_error is the distance: are the two swapped?": lambda p: p.truth[POSITION],
+    "angle_error is in degrees; the handout wants radians": lambda p: math.degrees(p.truth[ANGLE]),
+    "angle_error has no sign: left and right can't be distinguished": lambda p: abs(p.truth[ANGLE]),
+    "The sign of angle_error is wrong: it has to be the goal's direction minus the heading": lambda p: -p.truth[ANGLE],
+    "The heading has no sign, as 2 * acos(w) has none: calculate it with atan2": lambda p: p.direction - abs(p.yaw),
+    "The sign of the heading is wrong, as if it were added instead of subtracted": lambda p: p.direction + p.yaw,
+    "The heading is orientation.z, a part of the quaternion": lambda p: p.direction - math.sin(p.yaw / 2.0),
+    "The goal's direction is that of atan2(dx, dy): it has to be atan2(dy, dx)": lambda p: math.atan2(*p.way) - p.yaw,
+    "A goal behind looks like one ahead: use atan2(dy, dx), not atan(dy / dx)": lambda p: _half_turned(p) - p.yaw,
+}
+
+
+def _half_turned(pair: Pair) -> float:
+    return math.atan(pair.way[1] / (pair.way[0] or 1e-9))
+
+
+CAUSES: Tuple[Cause, ...] = (
+    *_misplaced("The goal's x and y are swapped", lambda p: replace(p.goal, x=p.goal.y, y=p.goal.x).errors_at(p.now)),
+    *_misplaced(POSE_OF_START, lambda p: p.goal.errors_at(p.start), unchanged=True),
+    *_misplaced(
         "The goal is taken relative to the robot, where it is when the goal comes; goals are in odom",
         lambda p: p.misread(p.start.yaw),
         lambda p: p.misread(0.0),
     ),
-    _misplaced(
+    *_misplaced(
         "The robot's pose is counted from where it was when the node started; goals are in odom: use the pose in /odom "
         "as it is",
         lambda p: p.counted(compose(inverse(p.started), Pose2D(p.now.x, p.now.y, p.now.yaw))),
         lambda p: p.counted(Pose2D(p.now.x - p.started.x, p.now.y - p.started.y, p.now.yaw - p.started.yaw)),
     ),
-    _misplaced(
+    *_misplaced(
         "The robot's pose is taken in the world or map frame; goals are in odom",
         lambda p: p.goal.errors_at(Pose2D(p.now.world_x, p.now.world_y, p.now.world_yaw)),
     ),
-    # Of position_error alone.
-    Cause(
-        "position_error is the goal's distance from odom's origin: is the robot's position left out, read only at the "
-        "start, or not stored at once by the callback of /odom?",
-        position=(lambda p: math.hypot(p.goal.x, p.goal.y),),
-        of_position=True,
-        unchanged=True,
-    ),
-    Cause(
-        "position_error is the squared distance: the square root is missing",
-        position=(lambda p: sum(d * d for d in p.way),),
-    ),
-    Cause("position_error is |dx|: is dy left out?", position=(lambda p: abs(p.way[0]),)),
-    Cause("position_error is |dy|: is dx left out?", position=(lambda p: abs(p.way[1]),)),
-    Cause("position_error is the angle error: are the two swapped?", position=(lambda p: p.truth[ANGLE],)),
-    # Of angle_error alone.
-    FROM_ORIGIN,
-    Cause(
-        "angle_error is the goal's direction in odom, as if the heading stayed 0: is the heading left out, read only "
-        "at the start, calculated wrongly from the quaternion, whose order is x, y, z, w, or not stored at once by the"
-        " callback of /odom?",
-        angle=(lambda p: p.direction,),
-        unchanged=True,
-    ),
-    Cause(
-        "The goal's direction is that from where the robot is when the goal comes, or from odom's origin: calculate it"
-        " in each iteration from the newest position",
-        angle=(lambda p: wrapped(p.goal.errors_at(p.start)[ANGLE] + p.start.yaw - p.now.yaw),),
-    ),
-    Cause(
-        "angle_error is in degrees; the handout wants radians",
-        angle=(lambda p: math.degrees(p.truth[ANGLE]),),
-    ),
-    Cause(
-        "angle_error has no sign: left and right can't be distinguished",
-        angle=(lambda p: abs(p.truth[ANGLE]),),
-    ),
-    Cause(
-        "The sign of angle_error is wrong: it has to be the goal's direction minus the heading",
-        angle=(lambda p: -p.truth[ANGLE],),
-    ),
-    Cause(
-        "The heading has no sign, as 2 * acos(w) has none: calculate it with atan2",
-        angle=(lambda p: p.direction - abs(p.now.yaw),),
-    ),
-    Cause(
-        "The sign of the heading is wrong, as if it were added instead of subtracted",
-        angle=(lambda p: p.direction + p.now.yaw,),
-    ),
-    Cause(
-        "The heading is as large as orientation.z, which is a component of the quaternion and not an angle",
-        angle=(lambda p: p.direction - math.sin(wrapped(p.now.yaw) / 2.0),),
-    ),
-    Cause(
-        "The goal's direction is that of atan2(dx, dy): it has to be atan2(dy, dx)",
-        angle=(lambda p: math.atan2(*p.way) - p.now.yaw,),
-    ),
-    Cause(
-        "A goal behind looks like one ahead, as with atan(dy / dx): atan2(dy, dx) is needed",
-        angle=(lambda p: math.atan(p.way[1] / (p.way[0] or 1e-9)) - p.now.yaw,),
-    ),
-    Cause("angle_error is the distance: are the two swapped?", angle=(lambda p: p.truth[POSITION],)),
+    Cause(OF_ORIGIN, POSITION, lambda p: math.hypot(p.goal.x, p.goal.y), of_position=True, unchanged=True),
+    Cause(DIRECTION_ONCE, ANGLE, lambda p: math.atan2(p.goal.y, p.goal.x) - p.yaw, of_position=True),
+    Cause(DIRECTION_ONCE, ANGLE, lambda p: p.goal.errors_at(p.start)[ANGLE] + p.start.yaw - p.yaw, of_position=True),
+    Cause(NO_HEADING, ANGLE, lambda p: p.direction, unchanged=True),
+    *(Cause(sentence, POSITION, formula) for sentence, formula in OF_POSITION.items()),
+    *(Cause(sentence, ANGLE, formula) for sentence, formula in OF_ANGLE.items()),
 )

@@ -23,9 +23,6 @@ DRIVES = {  # scenario: how the robot drives, and where its goal is
 }
 
 
-DRIFT = 0.001  # [rad/s] of the heading in /odom
-
-
 class Seen:
     """What a server calculates its errors from."""
 
@@ -62,12 +59,9 @@ ANGLE: List[Tuple[Callable[[Seen], float], str]] = [
     (lambda s: s.direction, "is the heading left out, read only at the start, calculated wrongly from the quaternion"),
     (lambda s: wrap(s.direction + s.yaw), "as if it were added instead of subtracted"),
     (lambda s: wrap(s.direction - abs(s.yaw)), "The heading has no sign, as 2 * acos(w) has none"),
-    (lambda s: wrap(s.direction - math.sin(s.yaw / 2.0)), "The heading is as large as orientation.z"),
+    (lambda s: wrap(s.direction - math.sin(s.yaw / 2.0)), "The heading is orientation.z, a part of the quaternion"),
     (lambda s: wrap(math.atan2(s.dx, s.dy) - s.yaw), "that of atan2(dx, dy): it has to be atan2(dy, dx)"),
-    (lambda s: wrap(math.atan(s.dy / s.dx) - s.yaw), "A goal behind looks like one ahead, as with atan(dy / dx)"),
-    (lambda s: wrap(s.direction - math.degrees(s.yaw)), "The heading is in degrees"),
-    (lambda s: s.direction - math.degrees(s.yaw), "The heading is in degrees"),
-    (lambda s: wrap(s.direction - math.degrees(s.yaw + DRIFT * s.at.time)), "The heading is in degrees"),
+    (lambda s: wrap(math.atan(s.dy / s.dx) - s.yaw), "A goal behind looks like one ahead: use atan2(dy, dx)"),
     (lambda s: -s.angle, "The sign of angle_error is wrong: it has to be the goal's direction minus the heading"),
     (lambda s: abs(s.angle), "angle_error has no sign: left and right can't be distinguished"),
     (lambda s: math.degrees(s.angle), "degrees"),
