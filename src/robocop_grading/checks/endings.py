@@ -185,7 +185,7 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
 
 @check("speeds")
 def stands_at_end(record: Record, limits: Limits) -> Verdict:
-    """The robot moves only while a goal is active: it stands still before the first one, and after each has ended."""
+    """The robot moves only while a goal is active."""
     judged = False
     begin = min((goal.time for goal in record.goals), default=math.inf)
     for command in record.commands:
