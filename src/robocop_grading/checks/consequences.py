@@ -178,8 +178,6 @@ FOLLOWS = (
     Row("stays_alive", None, "no_exception", not_killed),
     # Feedback.
     Row("feedback_rate", Kind.TOO_LITTLE, "no_exception", raised),
-    Row("feedback_angle", Kind.WRONG_POSITION, "feedback_position"),
-    Row("feedback_angle", Kind.OLD_POSE, "feedback_position", same_kind),
     Row("feedback_position feedback_angle", None, "next_goal", of_a_goal_that_ended_at_once),
     # How goals end.
     Row("only_ahead_counts", Kind.ABORTED, "stops_at_obstacle", too_early_elsewhere),
@@ -206,10 +204,8 @@ FOLLOWS = (
     Row("goal_behind", Kind.LONG_TURN, "feedback_rate", slow_loop),
     Row("stops_at_obstacle odd_scans", Kind.TOO_NEAR, "feedback_rate", slow_loop),
     Row("goal_behind", Kind.LONG_TURN, "drives_straight"),
-    Row("goal_behind", Kind.LONG_TURN, "turns_to_goal"),
     Row("newer_goal", None, "cancel", same_kind),
     Row("goal_behind newer_goal", None, "next_goal", same_kind),
-    Row("next_goal", None, "reaches_goal"),
     # The bridge.
     Row(BRIDGE_CHECKS, Kind.NO_GOAL, "bridge_alive"),
     Row(BRIDGE_CHECKS, Kind.NO_REPORT, "bridge_alive"),

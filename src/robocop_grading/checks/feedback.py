@@ -36,6 +36,10 @@ GROWS = (
     "The rate of the feedback is right at the first goal and becomes higher with later goals: does a timer or a thread "
     "of an earlier goal go on? Stop it when its goal ends"
 )
+OLD = (
+    "The feedback is old, by up to {:.1f} s: calculate the errors from the newest pose, then publish them, both in the "
+    "same iteration, and let callbacks return at once"
+)
 DIFFERENCE = "the difference of two angles has to be normalized to -pi..pi"
 
 
@@ -126,9 +130,8 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
         cause = of_old_pose
     elif not found:
         age = age_of([records[name] for name in names], index)
-        return replace(failure, cause=_aged(index, age), kind=Kind.OLD_POSE) if age else replace(failure, cause=cause)
-    of_position = any(it.of_position for it in found)
-    return replace(failure, cause=cause, kind=Kind.WRONG_POSITION if of_position else Kind.WRONG_ERROR)
+        return replace(failure, cause=OLD.format(age), kind=Kind.OLD_POSE) if age else replace(failure, cause=cause)
+    return replace(failure, cause=cause)
 
 
 @check("errors", explain=partial(_explained, POSITION))
@@ -162,16 +165,7 @@ def _old(record: Record, index: int) -> Optional[Failed]:
     age = age_of([record], index)
     name, time = ERRORS[index], record.feedback[0].time
     return (
-        Failed(f"the present {name}", f"one of {age:.2f} s ago", time, _aged(index, age), Kind.OLD_POSE)
-        if age
-        else None
-    )
-
-
-def _aged(index: int, age: float) -> str:
-    return (
-        f"{ERRORS[index]} in the feedback is old, by up to {age:.1f} s: calculate it from the newest pose, then "
-        "publish the feedback, both in the same iteration, and let callbacks return at once"
+        Failed(f"the present {name}", f"one of {age:.2f} s ago", time, OLD.format(age), Kind.OLD_POSE) if age else None
     )
 
 

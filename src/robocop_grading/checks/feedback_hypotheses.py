@@ -70,14 +70,12 @@ Errors = Callable[[Pair], Tuple[float, float]]
 class Cause(NamedTuple):
     """A mistake in words, and the position_error or angle_error to which it leads.
 
-    `of_position`: the robot's or the goal's position is wrong, which explains both errors. `unchanged`: the errors are
-    those of a pose that does not change.
+    `unchanged`: the errors are those of a pose that does not change.
     """
 
     sentence: str
     index: int
     formula: Formula
-    of_position: bool = False
     unchanged: bool = False
 
 
@@ -88,20 +86,20 @@ def _misplaced(sentence: str, *poses: Errors, unchanged: bool = False) -> List[C
         return lambda pair: errors(pair)[index]
 
     both = itertools.product((POSITION, ANGLE), poses)
-    return [Cause(sentence, index, error(index, errors), True, unchanged) for index, errors in both]
+    return [Cause(sentence, index, error(index, errors), unchanged) for index, errors in both]
 
 
 POSE_OF_START = (
     "The errors stay those of where the robot is when the goal comes: is the newest pose taken in each iteration, and "
     "does the callback of /odom store each pose at once?"
 )
-OF_ORIGIN = (
-    "position_error is the goal's distance from odom's origin: is the robot's position left out, read only at the "
-    "start, or not stored at once by the callback of /odom?"
+LEFT_OUT = (
+    "The errors are those from odom's origin: is the robot's position left out, read only at the start, or not stored "
+    "at once by the callback of /odom?"
 )
 DIRECTION_ONCE = (
-    "The goal's direction is that from where the robot is when the goal comes, or from odom's origin: calculate it in "
-    "each iteration from the newest position"
+    "The goal's direction is that from where the robot is when the goal comes: calculate it in each iteration from the "
+    "newest position"
 )
 NO_HEADING = (
     "angle_error is the goal's direction in odom, as if the heading stayed 0: is the heading left out, read only at "
@@ -149,9 +147,8 @@ CAUSES: Tuple[Cause, ...] = (
         "The robot's pose is taken in the world or map frame; goals are in odom",
         lambda p: p.goal.errors_at(Pose2D(p.now.world_x, p.now.world_y, p.now.world_yaw)),
     ),
-    Cause(OF_ORIGIN, POSITION, lambda p: math.hypot(p.goal.x, p.goal.y), of_position=True, unchanged=True),
-    Cause(DIRECTION_ONCE, ANGLE, lambda p: math.atan2(p.goal.y, p.goal.x) - p.yaw, of_position=True),
-    Cause(DIRECTION_ONCE, ANGLE, lambda p: p.goal.errors_at(p.start)[ANGLE] + p.start.yaw - p.yaw, of_position=True),
+    *_misplaced(LEFT_OUT, lambda p: p.goal.errors_at(Pose2D(0.0, 0.0, p.yaw)), unchanged=True),
+    Cause(DIRECTION_ONCE, ANGLE, lambda p: p.goal.errors_at(p.start)[ANGLE] + p.start.yaw - p.yaw),
     Cause(NO_HEADING, ANGLE, lambda p: p.direction, unchanged=True),
     *(Cause(sentence, POSITION, formula) for sentence, formula in OF_POSITION.items()),
     *(Cause(sentence, ANGLE, formula) for sentence, formula in OF_ANGLE.items()),

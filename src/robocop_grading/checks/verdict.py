@@ -39,7 +39,6 @@ class Kind(enum.Enum):
     LONG_TURN = "a long turn"
     MOVING = "motion after the end"
     # Feedback.
-    WRONG_POSITION = "the position is wrong"
     WRONG_ERROR = "an error is wrong"
     OLD_POSE = "an error is old"
     TOO_LITTLE = "too few messages"

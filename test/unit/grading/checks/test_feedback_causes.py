@@ -66,7 +66,7 @@ ANGLE: List[Tuple[Callable[[Seen], float], str]] = [
     (lambda s: abs(s.angle), "angle_error has no sign: left and right can't be distinguished"),
     (lambda s: math.degrees(s.angle), "degrees"),
     (lambda s: s.direction - s.yaw, "angle_error is not wrapped: 3.2 rad"),
-    (lambda s: wrap(math.atan2(s.goal.y, s.goal.x) - s.yaw), "from where the robot is when the goal comes, or from"),
+    (lambda s: wrap(math.atan2(s.goal.y, s.goal.x) - s.yaw), "The errors are those from odom's origin"),
 ]
 
 
@@ -112,7 +112,7 @@ def test_errors_of_an_old_pose_are_one_mistake_that_is_named(shown: Callable[[in
 
     checks = judged(feedback)
     failure, angle = checks["feedback_position"].failure, checks["feedback_angle"]
-    assert failure is not None and f"position_error in the feedback is old, by up to {age} s" in failure.cause
+    assert failure is not None and f"The feedback is old, by up to {age} s" in failure.cause
     assert angle.failure is None or angle.follows == "feedback_position"
 
 
