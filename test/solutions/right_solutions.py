@@ -66,6 +66,15 @@ CHANGED: Dict[str, Changes] = {
     "continuous_steering": ((DRIVE, "self.drive(min(0.2, 0.05 + 0.4 * position_error), 1.5 * angle_error)"),),
     # At the robot's limits.
     "fast": ((TURN, TURN.replace("0.8", "1.6")), (DRIVE, "self.drive(0.22, 0.0)")),
+    # Stands still for a second between turning and driving.
+    "pauses_before_driving": (
+        (RATE, f"{RATE}        pause = 0\n"),
+        (TURN, f"pause = 10\n                {TURN}"),
+        (
+            "            else:\n                self.drive(0.2",
+            "            elif pause:\n                pause -= 1\n                self.stop()\n            else:\n                self.drive(0.2",
+        ),
+    ),
     # Prints exceptions that it has caught.
     "prints_caught_exceptions": (
         (IMPORT, f"{IMPORT}import traceback\n"),
