@@ -42,6 +42,10 @@ def recorded(
 
 def graded(name: str, text: str, folder: Path, seed: int = 0, only: Sequence[str] = ()) -> Grade:
     """The grade of a solution, or of what some checks need."""
-    run = recorded(text, folder, only, seed=seed)
+    return judged(name, recorded(text, folder, only, seed=seed), seed, only)
+
+
+def judged(name: str, run: Recorded, seed: int = 0, only: Sequence[str] = ()) -> Grade:
+    """The grade of a solution that was driven."""
     part = "bridge" if "no_server" in run.records else "server"
     return judge.judge(name, load(PLAN, seed).restricted(only), {part: run.records}, {part: run.problem})

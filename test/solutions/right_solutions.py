@@ -81,6 +81,15 @@ CHANGED: Dict[str, Changes] = {
         (SLEEP, "            await asyncio.sleep(0.1)\n"),
         ("    rospy.spin()\n", "    node.loop.run_forever()\n"),
     ),
+    # Stands still for a second between turning and driving.
+    "pauses_before_driving": (
+        (RATE, f"{RATE}        pause = 0\n"),
+        (TURN, f"pause = 10\n                {TURN}"),
+        (
+            "            else:\n                self.drive(0.2",
+            "            elif pause:\n                pause -= 1\n                self.stop()\n            else:\n                self.drive(0.2",
+        ),
+    ),
     # Commands at 100 Hz, each of them logged; feedback at 10 Hz.
     "hundred_hertz": (
         (

@@ -10,11 +10,13 @@ import time
 
 import pytest
 import rosbag
-from graded import PLAN, SHARE, STATE, graded, recorded
+from graded import PLAN, SHARE, STATE, graded, judged, recorded
 from processes import busy_processes, processes_mentioning
 from right_solutions import HERE, RIGHT
-from wrong_solutions import ADVISED, WRONG
+from wrong_solutions import ADVISED, ROWS, WRONG
 
+from robocop_grading import reasons
+from robocop_grading.checks.consequences import FOLLOWS
 from robocop_grading.cli import INTERRUPTED
 from robocop_grading.errors import GradingError
 from robocop_grading.grades import CheckOutcome
@@ -41,9 +43,19 @@ def test_correct_solution_gets_full_marks(right, tmp_path):
     assert {check.name: check.words for check in grade.checks if check.outcome is not CheckOutcome.PASSED} == {}
 
 
-def test_wrong_solution_fails_the_intended_check_with_the_expected_explanation(wrong, tmp_path):
-    for only in ((),) if wrong.alone else ((wrong.check,), ()):  # all scenarios, if it depends on those before
-        grade = graded(wrong.name, wrong.text(), tmp_path / str(len(only)), only=only)
+def without(row):
+    """The table of consequences without a row."""
+    left = tuple(it for it in FOLLOWS if ((it.later.split() or [""])[0], it.kind, it.earlier) != row)
+    assert len(left) == len(FOLLOWS) - 1, row
+    return left
+
+
+def test_wrong_solution_fails_the_intended_check_with_the_expected_explanation(wrong, tmp_path, monkeypatch):
+    rows = [row for row, name in ROWS.items() if name == wrong.name]
+    whole = wrong.alone or rows
+    for only in ((),) if whole else ((wrong.check,), ()):  # all scenarios, if it depends on those before
+        run = recorded(wrong.text(), tmp_path / str(len(only)), only)
+        grade = judged(wrong.name, run, only=only)
         check = next(check for check in grade.checks if check.name == wrong.check)
         if check.outcome is CheckOutcome.FAILED:
             break
@@ -51,6 +63,16 @@ def test_wrong_solution_fails_the_intended_check_with_the_expected_explanation(w
     assert wrong.words in check.words
     if wrong.alone:
         assert [mistake.check.name for mistake in grade.mistakes] == [wrong.check]
+    for row in rows:
+        monkeypatch.setattr(reasons, "FOLLOWS", without(row))
+        begins = [[check.follows for check in it.checks] for it in (grade, judged(wrong.name, run))]
+        assert begins[0] != begins[1], row
+
+
+def test_each_row_of_consequences_of_servers_has_a_wrong_server_that_needs_it():
+    bridge = {check.name for check in load(PLAN).checks if check.part == "bridge"}
+    rows = {((it.later.split() or [""])[0], it.kind, it.earlier) for it in FOLLOWS if it.earlier not in bridge}
+    assert rows == set(ROWS) and set(ROWS.values()) <= {wrong.name for wrong in WRONG}
 
 
 @pytest.mark.slow

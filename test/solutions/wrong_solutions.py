@@ -1,9 +1,11 @@
 """Wrong solutions: the base with one mistake each, the check that has to fail, and words of its explanation."""
 
 from dataclasses import dataclass
-from typing import Tuple
+from typing import Dict, Optional, Tuple
 
-from right_solutions import ABORT, BRIDGE, OBSTACLE, PUBLISH, RATE, SERVER, SLEEP, TURN, Changes, changed
+from right_solutions import ABORT, BRIDGE, DRIVE, OBSTACLE, PUBLISH, RATE, SERVER, SLEEP, TURN, Changes, changed
+
+from robocop_grading.checks.verdict import Kind
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,7 @@ def _bridge(name: str, check: str, words: str, *changes: Tuple[str, str], alone:
 CONDITION = "if abs(angle_error) > 0.1:"
 ERROR = "angle_error = wrap(math.atan2(dy, dx) - yaw)"
 POSE = "self.pose = (msg.pose.pose.position.x, msg.pose.pose.position.y, yaw)"
+START = "        self.server.start()\n"
 PREEMPTION = """            if self.server.is_preempt_requested():
                 self.stop()
                 self.server.set_preempted(GoToPositionResult(False, 'preempted'))
@@ -141,7 +144,7 @@ WRONG: Tuple[Wrong, ...] = (
     _server(
         "map_frame",
         "feedback_position",
-        "position is taken in the world or map frame",
+        "pose is taken in the world or map frame",
         (
             "        self.pose = None\n",
             "        import tf2_ros\n        self.pose = None\n        self.buffer = tf2_ros.Buffer()\n"
@@ -176,7 +179,7 @@ WRONG: Tuple[Wrong, ...] = (
     _server(
         "scan_read_once",
         "stops_at_obstacle",
-        "check the distance ahead in each iteration",
+        "was not aborted when the obstacle ahead was nearer than 0.3 m",
         ("self.min_dist_ahead < 0.3", "ahead < 0.3"),
         (RATE, "        rate = rospy.Rate(10)\n        ahead = self.min_dist_ahead\n"),
     ),
@@ -695,7 +698,99 @@ WRONG: Tuple[Wrong, ...] = (
         (REACHED, "if position_error < 0.1 and abs(angle_error) < 0.1:"),
         alone=True,
     ),
+    _server(
+        "moves_before_any_goal",
+        "stands_at_end",
+        "to move although no goal is active",
+        (START, f"{START}        self.drive(0.1, 0.0)\n        rospy.sleep(1.5)\n        self.stop()\n"),
+        alone=True,
+    ),
+    _server(
+        "errors_sent_twice",
+        "feedback_position",
+        "The feedback is old, by up to 0.1 s",
+        (PUBLISH, f"{PUBLISH}{SLEEP}{PUBLISH}"),
+        alone=True,
+    ),
+    _server(
+        "drives_sideways",
+        "drives_straight",
+        "linear.x is 0 within 0.1 rad",
+        ("        msg.linear.x = v\n", "        msg.linear.y = v\n"),
+        alone=True,
+    ),
+    _server("turns_while_driving", "drives_straight", "keeps turning", (DRIVE, "self.drive(0.2, 0.5)"), alone=True),
+    _server(
+        "first_errors_of_the_older_goal",
+        "next_goal",
+        "is not reset when a new goal begins",
+        ("        self.count = 0\n", "        self.told = None\n"),
+        (BEGIN, BEGIN.replace("success = False", "success, is_new = False, not self.told")),
+        (
+            "            feedback = ",
+            "            self.told = (position_error, angle_error) if is_new else self.told\n"
+            "            is_new, (position_error, angle_error) = True, self.told\n            feedback = ",
+        ),
+        alone=True,
+    ),
+    _server(
+        "name_error_in_the_main_loop",
+        "no_exception",
+        "NameError",
+        ("execute_cb=self.execute_cb,", ""),
+        (REQUESTED, f"{REQUESTED}\n                undefined"),
+        (
+            "    rospy.spin()\n",
+            "    while not rospy.is_shutdown():\n        rospy.sleep(0.05)\n"
+            "        if node.server.is_new_goal_available():\n"
+            "            node.execute_cb(node.server.accept_new_goal())\n",
+        ),
+        alone=True,
+    ),
+    Wrong(
+        "never_accepted",
+        "one_ending",
+        "A goal that was PENDING got a terminal state",
+        (("    handle.set_accepted()\n", ""),),
+        "right/low_level_odom_driven.py.in",
+        alone=True,
+    ),
 )
+
+# The row of consequences (the first of the later checks, kind, earlier check) -> the wrong server that needs it.
+ROWS: Dict[Tuple[str, Optional[Kind], str], str] = {
+    ("", Kind.NOT_REACHED, "action_server"): "never_started",
+    ("no_exception", None, "action_server"): "crashes_at_start",
+    ("stays_alive", None, "no_exception"): "name_error_in_the_main_loop",
+    ("feedback_rate", Kind.TOO_LITTLE, "no_exception"): "feedback_timer_raises",
+    ("feedback_position", None, "next_goal"): "first_errors_of_the_older_goal",
+    ("only_ahead_counts", Kind.ABORTED, "stops_at_obstacle"): "obstacle_at_half_a_metre",
+    ("reaches_goal", None, "no_exception"): "exception_while_driving",
+    ("success_result", Kind.NO_MESSAGE, "one_ending"): "no_terminal_state",
+    ("reaches_goal", None, "stays_alive"): "name_error_in_the_main_loop",
+    ("reaches_goal", None, "one_ending"): "never_accepted",
+    ("reaches_goal", Kind.SUCCESS_LATE, "feedback_rate"): "slow_loop",
+    ("reaches_goal", Kind.TOO_FAR, "feedback_position"): "first_odometry_is_zero",
+    ("reaches_goal", None, "feedback_angle"): "first_odometry_is_zero",
+    ("reaches_goal", Kind.NO_RESULT, "turns_to_goal"): "turns_away_beyond_two_radians",
+    ("reaches_goal", Kind.NO_RESULT, "drives_straight"): "drives_sideways",
+    ("reaches_goal", None, "reaches_goal"): "success_at_once",
+    ("feedback_rate", None, "reaches_goal"): "odometry_of_another_type",
+    ("turns_to_goal", Kind.MOVES_FIRST, "already_there"): "moves_first",
+    ("stops_at_obstacle", Kind.MOVES_FIRST, "turns_to_goal"): "moves_first",
+    ("odd_scans", None, "stops_at_obstacle"): "obstacle_checked_only_while_turning",
+    ("stops_at_obstacle", Kind.MOVING, "stands_at_end"): "aborts_and_drives_on",
+    ("goal_behind", Kind.LONG_TURN, "feedback_rate"): "slow_loop",
+    ("stops_at_obstacle", Kind.TOO_NEAR, "feedback_rate"): "slow_loop",
+    ("goal_behind", Kind.LONG_TURN, "drives_straight"): "turns_while_driving",
+    ("newer_goal", None, "cancel"): "preempted_three_seconds_later",
+    ("goal_behind", None, "next_goal"): "done_never_cleared",
+    ("feedback_position", Kind.NOT_REACHED, "feedback_rate"): "odometry_of_another_type",
+    ("drives_straight", Kind.NOT_REACHED, "turns_to_goal"): "forged_odometry",
+    ("failure_result", Kind.NOT_REACHED, "stops_at_obstacle"): "exception_in_scan",
+    ("turns_to_goal", Kind.NOT_REACHED, "reaches_goal"): "exception_while_driving",
+    ("reaches_goal", Kind.NOT_REACHED, "stays_alive"): "exits_with_result",
+}
 
 # Solutions that get full marks, and advice with these words.
 ADVISED: Tuple[Wrong, ...] = (

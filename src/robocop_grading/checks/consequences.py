@@ -5,6 +5,7 @@ from typing import Callable, NamedTuple, Optional, Sequence, TypeVar
 
 from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import Command, Feedback, Record, Sample, SentGoal
+from .endings import at_once
 from .output import NO_STATE_LOGGED, UNCAUGHT, logged
 from .verdict import Failed, Kind
 
@@ -54,6 +55,11 @@ def no_state_set(record: Record, failure: Failed, _earlier: Failed) -> bool:
     return logged(record, NO_STATE_LOGGED, failure.time)
 
 
+def not_accepted(_record: Record, _failure: Failed, earlier: Failed) -> bool:
+    """Return whether actionlib refused the states of goals that the server had not accepted."""
+    return earlier.kind is Kind.NOT_ACCEPTED
+
+
 def silent(record: Record, goal: SentGoal) -> bool:
     """Return whether the server, after it got a goal, neither moved the robot nor published anything about the goal."""
     told = [*record.feedback_of(goal), *record.results_of(goal)]
@@ -63,11 +69,6 @@ def silent(record: Record, goal: SentGoal) -> bool:
 def nothing_published(record: Record, failure: Failed, earlier: Failed) -> bool:
     """Return whether nothing came from the server after it got the goal, and the earlier failure says so, too."""
     return failure.goal is not None and silent(record, failure.goal) and earlier.kind is Kind.NO_RESULT
-
-
-def died_before(record: Record, failure: Failed, _earlier: Failed) -> bool:
-    """Return whether the node died before anything came from it after it got the goal."""
-    return bool(record.deaths) and failure.goal is not None and silent(record, failure.goal)
 
 
 def came_near(record: Record, failure: Failed) -> bool:
@@ -103,11 +104,6 @@ def never_reported_near(record: Record, failure: Failed, _earlier: Failed) -> bo
     reports = record.feedback_of(failure.goal) if failure.goal else []
     end = end_of(record, failure)
     return not any(it.position_error < GOAL_RADIUS and it.time < end - ITERATION for it in reports)
-
-
-def near_without_report(record: Record, failure: Failed, earlier: Failed) -> bool:
-    """Return whether the robot came to the goal, and the server never reported a position_error that says so."""
-    return came_near(record, failure) and never_reported_near(record, failure, earlier)
 
 
 def misled(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -154,9 +150,9 @@ def at_wall(_record: Record, failure: Failed, _earlier: Failed) -> bool:
     return failure.goal is not None and failure.goal.ends == "ABORTED"
 
 
-def wrong_since_a_later_goal(record: Record, failure: Failed, earlier: Failed) -> bool:
-    """Return whether the feedback is wrong from a later goal on, as a server keeps what an earlier one has set."""
-    return earlier.kind is Kind.NOT_RESET and any(failure.time > goal.time for goal in record.goals[1:])
+def of_a_goal_that_ended_at_once(record: Record, failure: Failed, earlier: Failed) -> bool:
+    """Return whether the wrong feedback is about a goal that began with what an earlier one had set."""
+    return earlier.kind is Kind.NOT_RESET and failure.goal is not None and at_once(record, failure.goal)
 
 
 class Row(NamedTuple):
@@ -179,13 +175,9 @@ FOLLOWS = (
     # The node does not start, raises an exception, or dies.
     Row("no_exception stays_alive", None, "action_server", starting),
     Row("stays_alive", None, "no_exception", not_killed),
-    Row("next_goal", Kind.NO_ANSWER, "stays_alive"),
-    Row("feedback_rate", None, "stays_alive", died),
     # Feedback.
     Row("feedback_rate", Kind.TOO_LITTLE, "no_exception", raised),
-    Row("feedback_angle", Kind.WRONG_POSITION, "feedback_position"),
-    Row("feedback_angle", Kind.OLD_POSE, "feedback_position", same_kind),
-    Row("feedback_position feedback_angle", None, "next_goal", wrong_since_a_later_goal),
+    Row("feedback_position feedback_angle", None, "next_goal", of_a_goal_that_ended_at_once),
     # How goals end.
     Row("only_ahead_counts", Kind.ABORTED, "stops_at_obstacle", too_early_elsewhere),
     Row(
@@ -195,30 +187,24 @@ FOLLOWS = (
         raised,
     ),
     Row("success_result failure_result", Kind.NO_MESSAGE, "one_ending", no_state_set),
-    Row(GOAL_CHECKS, Kind.NO_RESULT, "stays_alive", died),
+    Row(f"{GOAL_CHECKS} feedback_rate", None, "stays_alive", died),
+    Row(GOAL_CHECKS, None, "one_ending", not_accepted),
     Row(GOAL_CHECKS, Kind.SUCCESS_LATE, "feedback_rate", never_reported_near),
     Row(GOAL_CHECKS, Kind.TOO_FAR, "feedback_position", reported_near),
-    Row(GOAL_CHECKS, Kind.SUCCEEDED, "feedback_position", reported_near),
-    Row(GOAL_CHECKS, Kind.NO_RESULT, "feedback_position", near_without_report),
-    Row(GOAL_CHECKS, Kind.SUCCESS_LATE, "feedback_position", near_without_report),
     Row(f"{GOAL_CHECKS} turns_to_goal drives_straight", None, "feedback_angle", misled),
     Row(GOAL_CHECKS, Kind.NO_RESULT, "turns_to_goal", never_came_near),
     Row(GOAL_CHECKS, Kind.NO_RESULT, "drives_straight", never_came_near),
     Row(GOAL_CHECKS, None, "reaches_goal", same_kind),
     Row("feedback_rate turns_to_goal cancel newer_goal", None, "reaches_goal", nothing_published),
     Row("turns_to_goal", Kind.MOVES_FIRST, "already_there", same_kind),
-    Row("stops_at_obstacle", Kind.MOVES_FIRST, "already_there", same_kind),
     Row("stops_at_obstacle", Kind.MOVES_FIRST, "turns_to_goal", same_kind),
-    Row("turns_to_goal", None, "stays_alive", died_before),
     Row("odd_scans", None, "stops_at_obstacle", at_wall),
     Row("stops_at_obstacle odd_scans", Kind.MOVING, "stands_at_end"),
     Row("goal_behind", Kind.LONG_TURN, "feedback_rate", slow_loop),
     Row("stops_at_obstacle odd_scans", Kind.TOO_NEAR, "feedback_rate", slow_loop),
     Row("goal_behind", Kind.LONG_TURN, "drives_straight"),
-    Row("goal_behind", Kind.LONG_TURN, "turns_to_goal"),
     Row("newer_goal", None, "cancel", same_kind),
     Row("goal_behind newer_goal", None, "next_goal", same_kind),
-    Row("next_goal", None, "reaches_goal"),
     # The bridge.
     Row(BRIDGE_CHECKS, Kind.NO_GOAL, "bridge_alive"),
     Row(BRIDGE_CHECKS, Kind.NO_REPORT, "bridge_alive"),

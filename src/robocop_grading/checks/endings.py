@@ -1,9 +1,10 @@
 """Checks of a goal's terminal state and result."""
 
+import math
 from dataclasses import replace
 from typing import Callable, Optional
 
-from ..handout import GOAL_RADIUS, Limits
+from ..handout import GOAL_RADIUS, STOP_DISTANCE, Limits
 from ..record import ABORTED, AT_END, PREEMPTED, SUCCEEDED, TERMINAL, Record, Result, SentGoal, status_name
 from ..texts import sentences
 from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged_cause, no_state
@@ -15,14 +16,12 @@ NARROW = 0.5  # [m] obstacles that are wider fill the cone ahead
 TOO_SOON = 0.3  # [s] a goal that ends within this time was not driven to
 LOOK = 0.15  # [s] in which the robot has to stand still, once it has to
 ON_ITS_WAY = 0.3  # [s] after a result, in which a command may still arrive that was sent before it
-UNNOTICED = (
-    "The server did not notice the obstacle. Does it check the distance ahead in each iteration, does it use the beams "
-    "that point ahead, and does the callback of the scan return at once?"
-)
+UNNOTICED = f"The goal was not aborted when the obstacle ahead was nearer than {STOP_DISTANCE:g} m"
 TOO_FAR = (
     f"The goal succeeds before position_error is below {GOAL_RADIUS:g} m: is the threshold wrong, is the wrong "
     "quantity compared, or does something else end the goal?"
 )
+UNASKED = "The robot is commanded to move although no goal is active"
 EMPTY_RESULT = (
     "No result or an empty one was sent: fill in success and message, pass it to set_succeeded or set_aborted"
 )
@@ -35,7 +34,8 @@ def wrong_ending(record: Record, goal: SentGoal, wanted: int, limits: Limits) ->
         last = record.samples[-1].time if record.samples else goal.time
         problem = record.problem or "the goal got no terminal state and no result"
         other_type = wrong_type(record, "/odom", "/scan", "/cmd_vel")
-        cause = sentences(_collision(record, goal, last), problem[:1].upper() + problem[1:], other_type)
+        told = problem[:1].upper() + problem[1:], other_type or _unmoved(record, goal)
+        cause = sentences(_collision(record, goal, last), *told)
         return Failed(status_name(wanted), "no result", last, cause, Kind.NO_RESULT, goal)
     result = results[0]
     if result.status == wanted:
@@ -54,6 +54,16 @@ def wrong_ending(record: Record, goal: SentGoal, wanted: int, limits: Limits) ->
     return Failed(
         status_name(wanted), seen, result.time, sentences(collision, cause), kind_of_wrong_state(result.status), goal
     )
+
+
+def _unmoved(record: Record, goal: SentGoal) -> str:
+    """What is seen of a robot that was not driven to a goal: topics without a publisher, commands."""
+    if record.unpublished:
+        return f"The node subscribes to {', '.join(record.unpublished)}, which nobody publishes"
+    commands = [command.v for command in record.commands if command.time >= goal.time]
+    if not commands:
+        return "Nothing was published on /cmd_vel"
+    return "" if max(commands) > 0.0 else "linear.x on /cmd_vel was never above 0"
 
 
 def wrong_success(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
@@ -92,7 +102,7 @@ def _wrong_state(record: Record, goal: SentGoal, status: int, wanted: int) -> st
     if told:
         return told
     if status == PREEMPTED and not _asked_to_end(record, goal, end):
-        hint = "Is is_preempt_requested() called, with its parentheses?" if _at_once(record, goal) else ""
+        hint = "Is is_preempt_requested() called, with its parentheses?" if at_once(record, goal) else ""
         if any(cancel.time < goal.time for cancel in record.cancels):
             hint = "Does a cancel request that came before this goal end it?"
         return sentences("set_preempted is called although neither a cancel request nor a newer goal has come", hint)
@@ -132,19 +142,19 @@ def success_too_far(record: Record, goal: SentGoal, limits: Limits) -> Optional[
     kind, cause = Kind.TOO_FAR, TOO_FAR
     if own and own[-1] < GOAL_RADIUS:
         cause = f"The server believes that the robot is at the goal: its own position_error is {own[-1]:.3f} m"
-    if _at_once(record, goal) and any(_took_longer(record, it) for it in record.goals if it.time < goal.time):
+    if at_once(record, goal) and any(_took_longer(record, it) for it in record.goals if it.time < goal.time):
         kind, cause = Kind.NOT_RESET, "What an earlier goal has changed is not reset when a new goal begins"
     seen = f"success {nearest:.2f} m away"
     return Failed(f"success within {GOAL_RADIUS:g} m", seen, result.time, cause, kind, goal)
 
 
-def _at_once(record: Record, goal: SentGoal) -> bool:
+def at_once(record: Record, goal: SentGoal) -> bool:
     """Return whether a goal has ended too soon to be driven to."""
     return any(result.time - goal.time < TOO_SOON for result in record.results_of(goal)[:1])
 
 
 def _took_longer(record: Record, goal: SentGoal) -> bool:
-    return bool(record.results_of(goal)) and not _at_once(record, goal)
+    return bool(record.results_of(goal)) and not at_once(record, goal)
 
 
 @check("states")
@@ -175,8 +185,13 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
 
 @check("speeds")
 def stands_at_end(record: Record, limits: Limits) -> Verdict:
-    """The robot stands still after a goal has ended, in any state."""
+    """The robot moves only while a goal is active."""
     judged = False
+    begin = min((goal.time for goal in record.goals), default=math.inf)
+    for command in record.commands:
+        if command.time < begin and (abs(command.v) > limits.standing_v or abs(command.w) > limits.standing_w):
+            seen = f"linear.x {command.v:.2f} and angular.z {command.w:.2f} on /cmd_vel"
+            return Failed("a robot at rest", seen, command.time, UNASKED, Kind.MOVING)
     for number, goal in enumerate(record.goals):
         for result in record.results_of(goal)[:1]:
             stopped = result.time + limits.stop_within
@@ -219,12 +234,17 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
             return Failed("one result", f"{len(results)} results", results[1].time, TWO_STATES)
         judged = judged or bool(results)
     for line in record.lines:
-        if TWO_STATES_LOGGED.search(line.text):
-            cause = (
-                "The goal got two terminal states, as in the handout's example after a cancel: return at once "
-                "after set_succeeded(), set_aborted() and set_preempted()"
-            )
-            return Failed("one terminal state", line.text[:160], line.time, cause, Kind.TWO_STATES)
+        refused = TWO_STATES_LOGGED.search(line.text)
+        if refused:
+            state = int(refused[1])
+            cause = f"A goal that was {status_name(state)} got a terminal state: it has to be accepted before"
+            if state in TERMINAL:
+                cause = (
+                    f"{TWO_STATES}, as in the handout's example after a cancel: return at once after set_succeeded(), "
+                    "set_aborted() and set_preempted()"
+                )
+            kind = Kind.TWO_STATES if state in TERMINAL else Kind.NOT_ACCEPTED
+            return Failed("one terminal state", line.text[:160], line.time, cause, kind)
         if NO_STATE_LOGGED.search(line.text):
             return Failed("a terminal state", "none was set", line.time, no_state(record, line.time))
     for goal in record.goals:

@@ -5,13 +5,11 @@ from dataclasses import replace
 from functools import partial
 from typing import List, Mapping, Optional, Sequence
 
-import numpy as np
-
 from ..handout import GOAL_RADIUS, Limits
-from ..record import ERRORS, Record, SentGoal, wrapped
-from .feedback_age import AGES, LONG_AGES, age_of, repeats
-from .feedback_causes import OTHERWISE, TOLERANCES, UNITS, likely_cause, longest, misses
-from .feedback_hypotheses import ANGLE, OF_POSITION, POSE_TOPIC, POSITION, UNCHANGED, Pair
+from ..record import ERRORS, Record, SentGoal
+from .feedback_age import age_of
+from .feedback_causes import TOLERANCES, UNITS, likely_cause, longest, misses
+from .feedback_hypotheses import ANGLE, POSE_TOPIC, POSITION, Pair
 from .topic_use import late, unpublished
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
@@ -20,8 +18,6 @@ NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
 INEXACT = 0.02  # [m] of the position in /odom, which turns the direction of a goal that is near
 MAX_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
 MAX_WRONG_TIME = 0.25  # [s] messages that are wrong one after the other for so long are no transition
-STEADY = 0.005  # [m], [rad] smaller changes of an error are none
-SHIFT = 0.015  # [m], [rad] larger constant differences are no inexactness of /odom
 MIN_GOAL_TIME = 2.0  # [s] for which a goal has to be active: what a server does before its loop takes part of it
 STOPS = 0.4  # [s] after a goal's end, in which a timer's last feedback may come
 MAX_LATER = 3  # messages that may come even later
@@ -40,7 +36,10 @@ GROWS = (
     "The rate of the feedback is right at the first goal and becomes higher with later goals: does a timer or a thread "
     "of an earlier goal go on? Stop it when its goal ends"
 )
-CALCULATE = "calculate it from the newest pose, then publish the feedback, both in the same iteration"
+OLD = (
+    "The feedback is old, by up to {:.1f} s: calculate the errors from the newest pose, then publish them, both in the "
+    "same iteration, and let callbacks return at once"
+)
 DIFFERENCE = "the difference of two angles has to be normalized to -pi..pi"
 
 
@@ -123,15 +122,16 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
     wrong = [pair for pairs in scenarios for pair in _wrong(index, pairs, TOLERANCES[index])]
     cause, found = likely_cause(index, wrong, scenarios)
     silent = unpublished(records, POSE_TOPIC)
-    if found & UNCHANGED and silent:
+    unchanged = any(it.unchanged for it in found)
+    if unchanged and silent:
         cause = f"The errors do not change with the robot's pose: the node subscribes to {silent}, which nobody "
         cause += "publishes; the position comes from /odom"
-    elif of_old_pose and (found & UNCHANGED or cause == OTHERWISE[index]):
+    elif of_old_pose and (unchanged or not found):
         cause = of_old_pose
     elif not found:
-        aged = _aged(index, [records[name] for name in names], scenarios)
-        return replace(failure, cause=aged or cause, kind=Kind.OLD_POSE if aged else Kind.WRONG_ERROR)
-    return replace(failure, cause=cause, kind=Kind.WRONG_POSITION if found & OF_POSITION else Kind.WRONG_ERROR)
+        age = age_of([records[name] for name in names], index)
+        return replace(failure, cause=OLD.format(age), kind=Kind.OLD_POSE) if age else replace(failure, cause=cause)
+    return replace(failure, cause=cause)
 
 
 @check("errors", explain=partial(_explained, POSITION))
@@ -162,37 +162,11 @@ def feedback_angle(record: Record, limits: Limits) -> Verdict:
 
 def _old(record: Record, index: int) -> Optional[Failed]:
     """The failure of feedback that was true an iteration ago."""
-    age = age_of([record], index, AGES)
-    if age is None or _is_shifted(record, index):
-        return None
-    name, least = ERRORS[index], "at least " if age == AGES[-1] else ""
-    cause = f"{name} in the feedback is old: {CALCULATE}, and let callbacks return at once"
-    return Failed(
-        f"the present {name}", f"one of {least}{age:.2f} s ago", record.feedback[0].time, cause, Kind.OLD_POSE
+    age = age_of([record], index)
+    name, time = ERRORS[index], record.feedback[0].time
+    return (
+        Failed(f"the present {name}", f"one of {age:.2f} s ago", time, OLD.format(age), Kind.OLD_POSE) if age else None
     )
-
-
-def _aged(index: int, records: Sequence[Record], scenarios: Sequence[Sequence[Pair]]) -> str:
-    """Name the cause of feedback that was true some time ago, or is not calculated for each message; else empty."""
-    repeated = repeats(index, scenarios)
-    if repeated:
-        return f"{ERRORS[index]} is the same in {repeated} messages in a row while the robot moves: {CALCULATE}"
-    age = age_of(records, index, LONG_AGES)
-    # While the robot drives, an old distance differs by a constant; the angle does not change then.
-    if age is None or (index == POSITION and any(_is_shifted(record, index) for record in records)):
-        return ""
-    return f"{ERRORS[index]} in the feedback is that of about {age:.1f} s ago: {CALCULATE}"
-
-
-def _is_shifted(record: Record, index: int) -> bool:
-    """Return whether an error is wrong even while the true error does not change: then it is not merely old."""
-    differences = []
-    for pair in _compared(index, record):
-        truths = [pair.goal.errors_at(sample)[index] for sample in pair.samples]
-        if max(truths) - min(truths) < STEADY:
-            difference = pair.feedback.errors[index] - truths[-1]
-            differences.append(wrapped(difference) if index == ANGLE else difference)
-    return bool(differences) and abs(float(np.median(differences))) > SHIFT
 
 
 def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Failed]:
@@ -202,4 +176,6 @@ def _untrue(index: int, pairs: Sequence[Pair], tolerance: float) -> Optional[Fai
         return None
     first = wrong[0]
     seen = f"{ERRORS[index]} {first.feedback.errors[index]:.2f}"
-    return Failed(f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, "", Kind.WRONG_ERROR)
+    return Failed(
+        f"{first.truth[index]:.2f} {UNITS[index]}", seen, first.feedback.time, "", Kind.WRONG_ERROR, first.goal
+    )

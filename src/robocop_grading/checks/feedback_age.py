@@ -1,58 +1,59 @@
-"""How old the pose is from which feedback was calculated, and whether feedback is calculated anew for each message."""
+"""How old the pose is from which feedback was calculated: of 0 to 3 s ago, or the same for several messages."""
 
-from typing import Optional, Sequence
+import math
+from typing import Sequence, Tuple
 
 import numpy as np
 
 from ..record import Record, SentGoal
-from .feedback_hypotheses import ANGLE, Pair
+from .feedback_hypotheses import ANGLE
 
-AGES = np.arange(0.0, 0.305, 0.01)  # [s] of the pose that feedback may be of
-LONG_AGES = np.arange(0.0, 3.05, 0.1)  # [s] likewise, of feedback that is wrong
+AGES = np.arange(0.0, 3.005, 0.01)  # [s] of the pose that feedback may be of
 OLD = 0.085  # [s] a server that waits for odometry and then for a scan is 0.07 s late; an iteration is 0.1 s
+MANY = 0.4  # share of old messages; half of them are old if each value is sent twice
 MOVING = 10  # fewer messages say nothing about their age
-CHANGED = 0.02  # [m], [rad] change of the true error over the largest age
-STEP = 0.005  # [m], [rad] change of an error from one message to the next
+CHANGED, WINDOW = 0.02, 0.3  # [m] or [rad], and [s]: the true error of a robot that moves changes by more in that time
+FITS = 0.03  # [m], [rad] larger mean differences are of values that were never true
 MAX_DIFFERENCE = 0.2  # [m], [rad] larger differences count as this
-MOST = 0.6  # share of messages that have the value of the one before
 
 
-def age_of(records: Sequence[Record], index: int, ages: np.ndarray) -> Optional[float]:
-    """The age [s] of the pose with which an error fits clearly better than with the present pose, if there is one."""
-    rows = [_differences(record, goal, index, ages) for record in records for goal in record.goals]
-    differences = np.concatenate([np.zeros((0, len(ages))), *rows])
-    if len(differences) < MOVING:
-        return None
-    means = differences.mean(axis=0)
+def age_of(records: Sequence[Record], index: int) -> float:
+    """The age [s] that the values of an error reach while the robot moves; 0 if most of them are new or never true.
+
+    A value that is sent again is as old as where it was sent first.
+    """
+    each = [_differences(record, goal, index) for record in records for goal in record.goals]
+    differences = np.concatenate([np.zeros((0, len(AGES))), *(rows for rows, _, _ in each)])
+    held = np.concatenate([np.zeros(0), *(times for _, times, _ in each)])
+    moving = np.concatenate([np.zeros(0, dtype=bool), *(those for _, _, those in each)])
+    if moving.sum() < MOVING:
+        return 0.0
+    means = differences.mean(axis=0)  # also of a robot at rest: values that are wrong there are not merely old
     best = int(means.argmin())
-    return None if ages[best] < OLD or means[best] > 0.5 * means[0] else float(ages[best])
+    if means[best] > FITS:
+        return 0.0
+    if AGES[best] >= OLD and means[best] <= 0.5 * means[0]:
+        return float(AGES[best])
+    return float(np.quantile(held[moving], 0.95)) if (held[moving] > OLD).mean() > MANY else 0.0
 
 
-def repeats(index: int, scenarios: Sequence[Sequence[Pair]]) -> int:
-    """How many messages in a row have the same value although the true error changes; 0 if most values are new."""
-    moving = same = 0
-    for pairs in scenarios:
-        for before, pair in zip(pairs, pairs[1:]):
-            if pair.goal == before.goal and abs(pair.truth[index] - before.truth[index]) > STEP:
-                moving += 1
-                same += pair.feedback.errors[index] == before.feedback.errors[index]
-    return round(moving / (moving - same)) if moving > MOVING and MOST * moving < same < moving else 0
-
-
-def _differences(record: Record, goal: SentGoal, index: int, ages: np.ndarray) -> np.ndarray:
-    """(messages, ages): the reported error minus the true error `age` seconds earlier, while the true error changes."""
-    samples = record.samples_between(goal.time - ages[-1] - 0.2, record.active_until(goal))
-    own = record.feedback_of(goal)
+def _differences(record: Record, goal: SentGoal, index: int) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of the messages about a goal: (messages, AGES) the error minus the true one so long before its value was sent
+    first, how long ago [s] that was, and whether the robot moves; at rest each value is a new one.
+    """
+    samples = record.samples_between(goal.time - AGES[-1], record.active_until(goal))
+    own = [it for it in record.feedback_of(goal) if np.isfinite(it.errors[index])]
     if len(samples) < 2 or not own:
-        return np.zeros((0, len(ages)))
-    values = np.array([message.errors[index] for message in own])
+        return np.zeros((0, len(AGES))), np.zeros(0), np.zeros(0, dtype=bool)
+    values, times = np.array([it.errors[index] for it in own]), np.array([it.time for it in own])
     truth = np.array([goal.errors_at(sample)[index] for sample in samples])
     truth = np.unwrap(truth) if index == ANGLE else truth
     sampled = [sample.time for sample in samples]
-    times = np.array([message.time for message in own])
-    then = np.array([np.interp(times - age, sampled, truth) for age in ages]).T
-    differences = values[:, None] - then
+    moved = np.interp(times, sampled, truth) - np.interp(times - WINDOW, sampled, truth)
+    moving = np.abs(moved) > CHANGED
+    runs = np.cumsum((np.diff(values, prepend=math.nan) != 0.0) | ~moving)
+    first = times[np.searchsorted(runs, runs)]
+    differences = values[:, None] - np.interp(first[:, None] - AGES, sampled, truth)
     if index == ANGLE:
         differences = np.remainder(differences + np.pi, 2.0 * np.pi) - np.pi
-    moving = np.abs(then[:, 0] - then[:, -1]) > CHANGED
-    return np.minimum(np.abs(differences), MAX_DIFFERENCE)[moving & np.isfinite(values)]
+    return np.minimum(np.abs(differences), MAX_DIFFERENCE), times - first, moving

@@ -1,12 +1,12 @@
 """Which mistakes explain wrong feedback: those whose predicted values fit it in all scenarios."""
 
 import math
-from statistics import mean, median
+from statistics import mean
 from typing import Callable, List, Sequence, Set, Tuple
 
 from ..handout import Limits
 from ..record import ERRORS, wrapped
-from .feedback_hypotheses import ANGLE, CAUSES, FROM_ORIGIN, IN_DEGREES, POSITION, SENTENCES, UNCHANGED, Pair
+from .feedback_hypotheses import ANGLE, CAUSES, POSE_OF_START, Cause, Pair
 
 # [m], [rad] within which a value fits a hypothesis
 TOLERANCES = Limits().position_tolerance, Limits().angle_tolerance
@@ -16,24 +16,18 @@ MAX_UNEXPLAINED = 0.3  # share of all wrong values
 MAX_PAIRS = 100  # of a scenario that are compared
 LARGE = 7.0  # [m], [rad] larger values are squared or in degrees; the tolerances are then ten times as large
 FAR = 1.0  # [m], [rad] a larger miss counts as this
-SCALED = 0.2  # [m], [rad] smaller true errors are not used to estimate a factor
-MAX_SPREAD = 0.1  # of such a factor
-OFFSET = 0.05  # [m], [rad] a smaller constant difference counts as no difference
 UNITS = ("m", "rad")
-TURNED = 0.005  # [rad] from one message to the next; in degrees, this is more than the tolerance
-ENOUGH = 10  # fewer messages while the robot turns show nothing
-SAMPLES_BACK = range(4)  # [samples] of the pose that a message is based on
 MAX_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less than half of it
 
 
-OTHERWISE = (
-    "position_error is not the distance from the position in /odom to the goal",
-    "angle_error is not the goal's direction minus the heading, both in odom",
+DEFINITIONS = (
+    "the distance from the position in /odom to the goal",
+    "the goal's direction minus the heading, both in odom and the difference within +-pi",
 )
 
 
-def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]]) -> Tuple[str, Set[str]]:
-    """All causes that fit the wrong and the right values of every scenario, in words and by their names.
+def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]]) -> Tuple[str, Set[Cause]]:
+    """All causes that fit the wrong and the right values of every scenario, and these in words.
 
     If no cause fits, the text says what is wrong. `scenarios`: the pairs of each scenario, and the wrong pairs among
     them.
@@ -49,65 +43,26 @@ def likely_cause(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence
             return f"{ERRORS[index]} is always zero: is it filled in?", set()
         cause = f"{ERRORS[index]} is always {values[0]:.2f}: recalculate it in each iteration from the newest pose"
         return cause, set()
-    names = _fitting(index, wrong, thinned, scale)
-    if UNCHANGED.intersection(names) - {"pose_of_start"}:  # a special case of it
-        names = [name for name in names if name != "pose_of_start"]
-    if not names and index == ANGLE and any(_heading_is_in_degrees(scenarios, age) for age in SAMPLES_BACK):
-        names = [IN_DEGREES]
-    return "; or: ".join(map(SENTENCES.__getitem__, names)) or _measured(index, thinned), set(names)
+    found = _fitting(index, wrong, thinned, scale)
+    if any(cause.unchanged and cause.sentence != POSE_OF_START for cause in found):  # a special case of it
+        found = [cause for cause in found if cause.sentence != POSE_OF_START]
+    value, truth, unit = wrong[0].feedback.errors[index], wrong[0].truth[index], UNITS[index]
+    seen = f"{ERRORS[index]} is {value:.2f} {unit} where it has to be {truth:.2f} {unit}, {DEFINITIONS[index]}"
+    return "; or: ".join(dict.fromkeys(cause.sentence for cause in found)) or seen, set(found)
 
 
-def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]], scale: float) -> List[str]:
-    """The names of the hypotheses that fit, the best one first."""
-    positions = [misses(POSITION, pairs, lambda p: p.truth[POSITION]) for pairs in scenarios]
-    knows_position = all(_fits(it, POSITION, 0.5) for it in positions)
-    found: List[Tuple[float, str]] = []
-    for cause, predict in CAUSES[index]:
-        if cause == FROM_ORIGIN and knows_position:
-            continue
-        if not _fits(misses(index, wrong, predict, scale), index, MAX_UNEXPLAINED):
+def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pair]], scale: float) -> List[Cause]:
+    """The causes that fit, the best one first."""
+    found: List[Tuple[float, Cause]] = []
+    for cause in CAUSES:
+        predict = cause.formula
+        if cause.index != index or not _fits(misses(index, wrong, predict, scale), index, MAX_UNEXPLAINED):
             continue
         missed = [misses(index, pairs, predict, scale) for pairs in scenarios]
         rows = [longest(it, pairs, TOLERANCES[index]) for it, pairs in zip(missed, scenarios)]
-        if max(rows) < MAX_UNFITTED_TIME and all(_fits(it, index) for it in missed):
+        if max(rows) < MAX_UNFITTED_TIME and all(_fits(it, index) for it in missed) and _mean(missed) < MAX_MEAN:
             found.append((_mean(missed), cause))
-    return list(dict.fromkeys(cause for miss, cause in sorted(found) if miss < MAX_MEAN))
-
-
-def _heading_is_in_degrees(scenarios: Sequence[Sequence[Pair]], age: int) -> bool:
-    """Return whether angle_error changes as with a heading in degrees while the robot turns.
-
-    Its values say less: the heading in /odom drifts by some milliradians, which are 0.5 in degrees. `age` [samples]: of
-    the pose that a message is based on.
-    """
-    misses = []
-    for pairs in scenarios:
-        based = [(pair, pair.samples[-1 - age]) for pair in pairs if len(pair.samples) > age]
-        for (earlier, before), (pair, now) in zip(based, based[1:]):
-            turned = wrapped(now.yaw - before.yaw)
-            if pair.goal == earlier.goal and abs(turned) > TURNED:
-                true = pair.goal.errors_at(now)[ANGLE] - pair.goal.errors_at(before)[ANGLE]
-                told = pair.feedback.angle_error - earlier.feedback.angle_error
-                misses.append(abs(wrapped(told - (true + turned - math.degrees(turned)))))
-    return len(misses) >= ENOUGH and _fits(misses, ANGLE)
-
-
-def _measured(index: int, scenarios: Sequence[Sequence[Pair]]) -> str:
-    """What is wrong with values that no hypothesis explains."""
-    differences = [pair.feedback.errors[index] - pair.truth[index] for pairs in scenarios for pair in pairs]
-    if index == ANGLE:
-        differences = [wrapped(difference - differences[0]) + differences[0] for difference in differences]
-    middle = median(differences)
-    if abs(middle) > OFFSET and _fits([abs(difference - middle) for difference in differences], index):
-        word = "large" if middle > 0.0 else "small"
-        return f"{ERRORS[index]} is always {abs(middle):.2f} {UNITS[index]} too {word}"
-    both = [it for pairs in scenarios for it in pairs if abs(it.truth[index]) > SCALED]
-    factors = [it.feedback.errors[index] / it.truth[index] for it in both] or [1.0]
-    factor = median(factors)
-    steady = sum(abs(it - factor) > MAX_SPREAD * abs(factor) for it in factors) <= MAX_WRONG * len(factors)
-    if steady and abs(factor - 1.0) > 2.0 * MAX_SPREAD:
-        return f"{ERRORS[index]} is always {factor:.3g} times the true one: is its unit that of the handout?"
-    return OTHERWISE[index]
+    return [cause for _, cause in sorted(found, key=lambda it: it[0])]
 
 
 def _fits(misses: Sequence[float], index: int, most: float = MAX_WRONG) -> bool:

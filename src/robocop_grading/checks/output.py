@@ -17,7 +17,7 @@ PROBLEM = re.compile(_WARNING.replace("ERROR", "ERROR|FATAL"))
 TWO_STATES_LOGGED = re.compile(
     _ERROR
     + r"To transition to an? (?:active|rejected|canceled|cancelled|aborted|succeeded) state, the goal must be in an? "
-    + r"[a-z, ]+ state, it is currently in state: \d+"
+    + r"[a-z, ]+ state, it is currently in state: (\d+)"
 )
 NO_STATE_LOGGED = re.compile(_WARNING + r"Your executeCallback did not set the goal to a terminal status\.")
 EXECUTE_RAISED = re.compile(rf"{_ERROR}Exception in your execute callback: ")

@@ -15,10 +15,6 @@ MOSTLY = 0.7
 ENDS = 0.3  # [s] in which the robot stops
 SILENT = 1.0  # [s] after which feedback, if it goes on, has come
 IN_EACH = "is is_preempt_requested() called in each iteration"
-NOTHING_COMES = (
-    "neither feedback nor a result of the goal comes: is set_preempted() called for it, or does a callback wait for "
-    "something, such as the end of a thread, that itself waits for the callback?"
-)
 
 
 @check("states")
@@ -65,7 +61,7 @@ def _unnoticed(record: Record, goal: SentGoal, requested: float, request: str, h
     if not results or results[0].status not in (PREEMPTED, RECALLED):
         times = [feedback.time for feedback in record.feedback_of(goal)]
         if times and not results and times[-1] < requested + SILENT:
-            return f"After the {request} {NOTHING_COMES}"
+            return f"After the {request} neither feedback nor a result of the goal comes"
         return f"The {request} is not noticed: {hint}"
     own = record.feedback_of(goal)
     if own and own[-1].time < requested + SILENT and _begins_other(record, goal, requested, results[0].time):

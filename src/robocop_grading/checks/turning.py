@@ -98,8 +98,8 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
                 f"Once it has turned to the goal, the robot drives on at {angle:.2f} rad without turning again: "
                 f"compare angle_error with {TURN} in each iteration, because the heading changes while it drives"
                 if command.time > aligned
-                else f"The robot drives straight at {angle:.2f} rad: is the threshold of angle_error {TURN}, and is it "
-                "compared in each iteration?"
+                else f"The robot drives straight, with linear.x {command.v:.2f}, at an angle_error of {angle:.2f} rad: "
+                f"beyond {TURN} it has to turn first"
             )
         seen = f"linear.x {command.v:.2f} at {angle:.2f} rad"
         return Failed(NOT_DRIVING, seen, command.time, cause)
@@ -153,7 +153,9 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
         nearly = _situations(record, goal, 0.0, limits.turn_beyond)
         moving = [it for it in nearly if abs(it.command.v) > MIN_SPEED]
         driving = [it for it in moving if abs(it.command.v) > limits.driving] or moving
-        idle = [it for it in nearly if abs(it.command.v) <= MIN_SPEED and abs(it.command.w) <= MIN_SPEED]
+        drove = max((it.command.time for it in moving), default=-math.inf)  # it may stand still before
+        idle = [it for it in nearly if _is_idle(it.command) and it.command.time > drove]
+        aligned = [it for it in aligned if not _is_idle(it.command) or it.command.time > drove]
         if max(len(aligned), len(driving), len(idle) - LONG_IDLE) < ENOUGH:
             continue
         judged = True
@@ -161,6 +163,10 @@ def drives_straight(record: Record, limits: Limits) -> Verdict:
         if problem is not None:
             return replace(problem, goal=goal)
     return PASSED if judged else NotReached("the robot did not head for the goal for long enough")
+
+
+def _is_idle(command: Command) -> bool:
+    return abs(command.v) <= MIN_SPEED and abs(command.w) <= MIN_SPEED
 
 
 def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> Optional[Failed]:

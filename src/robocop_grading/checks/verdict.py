@@ -31,6 +31,7 @@ class Kind(enum.Enum):
     NOT_RESET = "an earlier goal has left something behind"
     NO_ANSWER = "the server no longer accepts goals"
     TWO_STATES = "two terminal states"
+    NOT_ACCEPTED = "a terminal state of a goal that was not accepted"
     NO_MESSAGE = "a result without a message"
     # Motion.
     MOVES_FIRST = "motion before the errors and the distance are known"
@@ -38,7 +39,6 @@ class Kind(enum.Enum):
     LONG_TURN = "a long turn"
     MOVING = "motion after the end"
     # Feedback.
-    WRONG_POSITION = "the position is wrong"
     WRONG_ERROR = "an error is wrong"
     OLD_POSE = "an error is old"
     TOO_LITTLE = "too few messages"

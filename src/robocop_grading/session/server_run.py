@@ -112,7 +112,8 @@ class ServerRun(Run):
         if problem:
             self.settle(AFTER)
         outlines = tuple(block.outline for block in scenario.obstacles)
-        record = self.finish(name, obstacles=outlines, problem=problem)
+        unpublished = tuple(self.topics.unpublished()) if problem else ()
+        record = self.finish(name, obstacles=outlines, problem=problem, unpublished=unpublished)
         if problem or self._unclean(record):
             self.close()
         return record

@@ -98,11 +98,10 @@ def test_robot_that_acts_on_its_wrong_angle_turns_wrongly_because_of_that() -> N
 
 
 def test_cause_of_wrong_feedback_fits_in_all_scenarios() -> None:
-    rounded = fed_back(position=round)
     shorter = cause_of("feedback_position", fed_back(position=lambda d: d / math.sqrt(2.0)))
-    assert shorter.count("; or: ") == 2 and all(word in shorter for word in ("is |dx|", "is |dy|", "larger one"))
-    assert "rounded to a whole number" in cause_of("feedback_position", rounded)
-    assert "is not the distance" in cause_of("feedback_position", rounded, replace(RIGHT, name="right"))
+    assert shorter.count("; or: ") == 1 and all(word in shorter for word in ("is |dx|", "is |dy|"))
+    both = cause_of("feedback_position", fed_back(position=lambda _: 1.0), replace(RIGHT, name="right"))
+    assert "position_error is 1.00 m where it has to be 1.41 m, the distance" in both
 
 
 def test_pose_that_never_changes_is_explained_by_the_topic_that_nobody_publishes() -> None:
@@ -200,6 +199,29 @@ def test_programs_of_ros_that_a_node_starts_are_named_whatever_failed() -> None:
     starts = replace(START, programs=("rostopic", "rosservice"))
     notes = graded(starts, replace(starts, name="left")).notes
     assert [it.startswith("server: it starts rosservice, rostopic: in a grading,") for it in notes] == [True]
+
+
+def test_goal_that_a_server_never_accepted_is_one_mistake() -> None:
+    refused = "[ERROR] To transition to a succeeded state, the goal must be in a preempting or active state, it is "
+    record = changed(lines=lines(f"{refused}currently in state: 0"), results=(), statuses=(), problem="no progress")
+    assert failures(record) == {"one_ending": "", "reaches_goal": "one_ending"}
+
+
+def test_newer_goal_that_is_not_served_follows_from_the_exception_that_ended_the_node() -> None:
+    newer = replace(GOAL, id="h", time=4.0)
+    dead = (rec.Death(4.1, 1),)
+    printed = tuple(replace(it, time=4.1) for it in NO_NAME)
+    record = changed(name="newer_goal", goals=(GOAL, newer), results=(), statuses=(), lines=printed, deaths=dead)
+    assert failures(record) == {"newer_goal": "no_exception", "no_exception": "", "stays_alive": "no_exception"}
+
+
+def test_wrong_feedback_about_a_goal_that_ends_at_once_follows_from_what_an_earlier_goal_has_left() -> None:
+    later = rec.SentGoal("h", -1.0, 0.0, 11.0, "SUCCEEDED")
+    results = (*RIGHT.results, rec.Result(11.1, "h", rec.SUCCEEDED, True, "there"))
+    kept = rec.Feedback(11.0, "h", 0.09, 0.0)
+    record = changed(name="behind", goals=(GOAL, later), results=results, feedback=(*RIGHT.feedback[::20], kept))
+    found = failures(record)
+    assert (found["next_goal"], found["feedback_position"], found["feedback_angle"]) == ("", "next_goal", "next_goal")
 
 
 def test_missing_feedback_follows_from_the_exception_that_ended_its_timer() -> None:

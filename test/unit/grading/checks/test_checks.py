@@ -45,6 +45,16 @@ def _aborted(**changes: Any) -> Record:
     return changed(**{"goals": (goal,), "results": (result,), "samples": samples, **changes})
 
 
+def _stuck(**fields: Any) -> Record:
+    """A goal that does not end."""
+    return changed(**{"results": (), "problem": "no progress for 8 s", **fields})
+
+
+def commanded_before(command: rec.Command) -> Record:
+    """A right run in which this command came before all others."""
+    return changed(commands=(command, *RIGHT.commands))
+
+
 FOR_EVER = tuple(replace(RIGHT.feedback[-1], time=10.5 + tick / 10.0) for tick in range(8))
 THERE = (replace(RIGHT.goals[0], x=-0.03, y=0.03),)
 WRONG: List[Tuple[str, Record, str]] = [
@@ -57,26 +67,40 @@ WRONG: List[Tuple[str, Record, str]] = [
     ("feedback_position", fed_back(position=lambda _: 0.7), "always 0.70"),
     ("feedback_position", fed_back(position=lambda _: 0.0), "always zero"),
     ("feedback_position", fed_back(position=lambda _: math.nan), "not finite"),
-    ("feedback_angle", fed_back(angle=lambda a: a + 1.0 if 0.5 < a < 0.65 else a), "angle_error is not the goal's"),
+    (
+        "feedback_angle",
+        fed_back(angle=lambda a: a + 1.0 if 0.5 < a < 0.65 else a),
+        "angle_error is 1.63 rad where it has to be 0.63 rad",
+    ),
     ("turns_to_goal", commanded(lambda c: replace(c, v=0.1)), "drives while it turns"),
     (
         "turns_to_goal",
         commanded(lambda c: replace(c, v=0.1, w=c.w if c.time < 0.4 else 0.0)),
-        "is the threshold of angle_error 0.1 rad",
+        "drives straight, with linear.x 0.10, at an angle_error of 0.59 rad: beyond 0.1 rad it has to turn first",
     ),
     ("turns_to_goal", commanded(lambda c: replace(c, w=-c.w)), "turns away"),
     ("turns_to_goal", commanded(lambda c: replace(c, w=0.0)), "angle_error is 0.79 rad but angular.z stayed 0"),
     ("turns_to_goal", changed(commands=()), "nothing was published on /cmd_vel"),
     ("drives_straight", commanded(lambda c: replace(c, v=-c.v)), "backward"),
     ("drives_straight", commanded(lambda c: replace(c, v=0.0)), "does not drive"),
+    ("drives_straight", commanded(lambda c: replace(c, v=c.v if c.time < 4.0 else 0.0)), "does not drive"),
     ("drives_straight", commanded(lambda c: replace(c, w=0.5)), "keeps turning"),
     ("reaches_goal", changed(results=()), "no terminal state"),
-    ("feedback_position", fed_back(position=lambda d: d - 0.1), "always 0.10 m too small"),
-    ("feedback_position", fed_back(position=lambda d: 100.0 * d), "position_error is always 100 times the true one"),
-    ("feedback_angle", fed_back(angle=lambda a: a / 2.0), "angle_error is always 0.5 times the true one"),
-    ("feedback_angle", fed_back(angle=lambda a: a + 0.4), "always 0.40 rad too large"),
-    ("feedback_position", OLD, "position_error in the feedback is old"),
-    ("feedback_angle", OLD_ANGLE, "angle_error in the feedback is old"),
+    ("reaches_goal", _stuck(commands=()), "for 8 s. Nothing was published on /cmd_vel"),
+    ("reaches_goal", _stuck(commands=(rec.Command(1.0, 0.0, 0.5),)), "for 8 s. linear.x on /cmd_vel was never above 0"),
+    ("reaches_goal", _stuck(unpublished=("/odometry",)), "for 8 s. The node subscribes to /odometry, which nobody"),
+    ("stands_at_end", commanded_before(rec.Command(-0.5, 0.0, 0.5)), "to move although no goal is active"),
+    ("stands_at_end", replace(commanded_before(rec.Command(0.1, 0.2, 0.0)), goals=(), results=()), "no goal is active"),
+    ("feedback_position", fed_back(position=lambda d: d - 0.1), "position_error is 1.31 m where it has to be 1.41 m"),
+    (
+        "feedback_position",
+        fed_back(position=lambda d: 100.0 * d),
+        "position_error is 141.42 m where it has to be 1.41 m",
+    ),
+    ("feedback_angle", fed_back(angle=lambda a: a / 2.0), "angle_error is 0.39 rad where it has to be 0.79 rad"),
+    ("feedback_angle", fed_back(angle=lambda a: a + 0.4), "angle_error is 1.19 rad where it has to be 0.79 rad"),
+    ("feedback_position", OLD, "The feedback is old"),
+    ("feedback_angle", OLD_ANGLE, "The feedback is old"),
     ("turns_to_goal", commanded(lambda c: replace(c, w=c.w if c.time > 1.3 else 0.0)), "stands for some time"),
     ("reaches_goal", LATE, "stands at the goal, but the result comes later"),
     ("reaches_goal", changed(results=(rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)), "threshold"),
@@ -91,6 +115,11 @@ WRONG: List[Tuple[str, Record, str]] = [
     ("one_ending", changed(results=RIGHT.results * 2), "two terminal states"),
     ("one_ending", logged(ERROR + TWO), "two terminal states"),
     ("one_ending", logged(f"[ERROR] {TWO}"), "two terminal states"),
+    (
+        "one_ending",
+        logged(f"[ERROR] {TWO[:-1]}0"),
+        "A goal that was PENDING got a terminal state: it has to be accepted",
+    ),
     *(
         (
             "one_ending",
@@ -217,6 +246,12 @@ def test_exception_is_named_with_its_file_and_line_and_without_its_folder(
 ) -> None:
     verdict = CHECKS["no_exception"](logged(*lines), LIMITS)
     assert isinstance(verdict, Failed) and (verdict.seen, verdict.cause) == (seen, f"{seen}{place}")
+
+
+def test_robot_may_stand_still_before_it_drives_and_be_told_so_before_the_first_goal() -> None:
+    pause = commanded(lambda c: replace(c, v=0.0 if c.time < 4.0 else c.v))
+    assert CHECKS["drives_straight"](pause, LIMITS) is PASSED
+    assert CHECKS["stands_at_end"](commanded_before(rec.Command(-0.5, 0.0, 0.0)), LIMITS) is PASSED
 
 
 @pytest.mark.parametrize(
