@@ -87,7 +87,8 @@ CHANGED: Dict[str, Changes] = {
         (TURN, f"pause = 10\n                {TURN}"),
         (
             "            else:\n                self.drive(0.2",
-            "            elif pause:\n                pause -= 1\n                self.stop()\n            else:\n                self.drive(0.2",
+            "            elif pause:\n                pause -= 1\n                self.stop()\n"
+            "            else:\n                self.drive(0.2",
         ),
     ),
     # Commands at 100 Hz, each of them logged; feedback at 10 Hz.

@@ -74,7 +74,7 @@ class Cause(NamedTuple):
     """
 
     sentence: str
-    index: int
+    error: int  # POSITION or ANGLE
     formula: Formula
     unchanged: bool = False
 
