@@ -97,8 +97,10 @@ PHONES = (UPRIGHT, TURNED, (390, 664), (750, 340))  # [pixel] the same of an iPh
 
 @pytest.mark.slow
 def test_on_a_phone_the_buttons_that_drive_are_in_reach_and_as_large_as_a_finger_and_name_no_keys(web, browser):
-    tab = Tab(browser, web.url, touch=True)
+    tab = Tab(browser, web.url, UPRIGHT, touch=True)
     tab.wait_for_text(READY)
+    wait_for(lambda: not tab.button("Forward").is_visible(), "they are folded, and do not cover the tabs")
+    tab.page.get_by_text("Drive", exact=True).tap()
 
     def is_in_reach(label, height):
         box = tab.button(label).bounding_box()  # None while the panel is laid out anew

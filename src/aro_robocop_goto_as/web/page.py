@@ -13,6 +13,7 @@ STEEP, FLAT = 0.9, 0.6  # sine of the angle at which cameras look down, in a tal
 ROOM, HEIGHT = 5.0, 0.4  # [m] along x and y, and along z, that are shown at least
 MAX_SHOWN = 10.0  # [m] from the origin, along x and y, at first; farther away a robot would be a few pixels
 DESK = 1.2  # width by height of the scene that "reset view" is made for
+LOWEST = 0.2  # [m] above the floor of a camera that somebody turns
 FILLED = 0.94  # share of the scene's width or height
 # The panel is beside the scene, on a phone below it, so that it covers nothing: viser's covers more than half of a
 # phone, and is as narrow there as elsewhere. And viser takes no notice of a press on its canvas that the canvas has
@@ -84,6 +85,10 @@ class BrowserCameras:
             nonlocal shown
             if any(np.allclose(camera.position, known) for known in (shown, self._server.initial_camera.position)):
                 shown = self._turn(camera)
+            elif camera.position[2] < LOWEST:  # it was turned to below the floor, which hides everything
+                (x, y, z), look_at = camera.position, camera.look_at
+                camera.position = (x, y, max(-z, LOWEST))
+                camera.look_at = look_at
 
         client.camera.on_update(on_update)
 
