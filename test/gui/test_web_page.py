@@ -47,7 +47,7 @@ def test_a_click_on_the_floor_drives_the_robot_there_and_the_page_reports_no_err
     before = places()
     tab.click_floor(0.0, 0.0)
     wait_for(results.messages, "a result")
-    tab.wait_for_text(r"✓ REACHED \(-?0\.0\d, -?0\.0\d\), 0\.\d\d m off, [\d.]+ s")
+    tab.wait_for_text(r"goal\s+SUCCEEDED \(-?0\.0\d, -?0\.0\d\)[\s\S]*REACHED: 0\.\d+ m from the goal")
     assert math.hypot(*web.position()) < REACHED
     wait_for(tab.button("Cancel goal").is_disabled, "there is nothing to cancel")
     assert places() == before, "the buttons stay where they are"
@@ -199,7 +199,7 @@ def test_cancel_ends_the_goal_and_stops_the_robot(web, tab):
         web.set_factor(1.0)
     assert result["status"]["status"] == GoalStatus.PREEMPTED
     wait_for(web.stands, "the robot stands")
-    tab.wait_for_text(r"✗ PREEMPTED \(.*\), it was cancelled")
+    tab.wait_for_text(r"goal\s+PREEMPTED \(.*\)[\s\S]*PREEMPTED: goal .*: it was cancelled")
 
 
 @pytest.mark.slow

@@ -146,7 +146,7 @@ class GotoNode:
 
     def set_terminal_state(self, execution: GoalExecution, ending: Ending) -> None:
         """Report how the goal ended, once."""
-        execution.outcome, self.display.state = ending.outcome, ending.message
+        execution.outcome, self.display.state = ending.outcome, ending.outcome.value
         if ending.outcome is Outcome.STUCK:
             ending = Ending(ending.outcome, ending.text + self.other_commands())
         log = rospy.loginfo if ending.outcome in (Outcome.REACHED, Outcome.PREEMPTED) else rospy.logwarn
