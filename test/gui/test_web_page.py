@@ -123,7 +123,8 @@ def test_a_tab_that_is_chosen_on_a_phone_fills_the_panel(web, browser, size):
     tab.wait_for_text(READY)
     tab.page.get_by_role("tab", name="Plots").dispatch_event("click")
     title = tab.page.get_by_role("tabpanel").get_by_text("errors", exact=True)
-    wait_for(lambda: title.bounding_box()["y"] + PLOT < tab.button("Forward").bounding_box()["y"], "the plot is seen")
+    drive = tab.page.get_by_text("Drive", exact=True)
+    wait_for(lambda: title.bounding_box()["y"] + PLOT < drive.bounding_box()["y"], "the plot is seen")
     tab.close()
 
 

@@ -36,7 +36,7 @@ def alert(message: str) -> str:
 
 def report(message: str) -> str:
     """What a server says of a goal. Two lines at all times, so that what is below stays where it is."""
-    return f'<div style="{STYLE};min-height:2.9em">{plain(message)}</div>'
+    return f'<div style="{STYLE};box-sizing:content-box;min-height:2lh">{plain(message)}</div>'
 
 
 def answer(message: str) -> str:

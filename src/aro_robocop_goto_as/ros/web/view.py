@@ -35,7 +35,7 @@ class ViewPart(Part):
         self._trail = Trail()
         self._message = None
         self._image.visible = False
-        inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry)
+        inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry, None)  # all, or a jump is no jump
         inbox.subscribe(absolute(robot, CAMERA), Image, self._on_image)
 
     def _on_odometry(self, _: float, message: Odometry) -> None:
