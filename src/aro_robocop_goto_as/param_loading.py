@@ -1,5 +1,6 @@
 """Plain values -> a frozen parameter dataclass; whatever does not fit is an error that names source, key and value."""
 
+import contextlib
 import math
 from dataclasses import MISSING, Field, field, fields
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Type, TypeVar, cast, get_args, get_type_hints
@@ -12,6 +13,7 @@ T = TypeVar("T")
 
 MODELS_OWN, PROFILES_OWN = "the model's value", "the profile's value"  # what a default of None stands for
 MIN_POSITIVE, MAX_POSITIVE = 1e-9, 1e6  # bounds of a number that only has to be greater than 0
+BOOLEANS = {"true": True, "1": True, "false": False, "0": False}  # as roslaunch reads them
 TYPES = {bool: "true or false", int: "an integer", float: "a number", str: "a text", dict: "a mapping", list: "a list"}
 MAX_COORDINATE = 1e6  # [m] from the origin; beyond, single-precision messages no longer resolve centimetres
 
@@ -88,6 +90,20 @@ def from_dict(cls: Type[T], raw: Mapping[str, Any], source: str) -> T:
     if problems:
         raise ParameterError("{}: {}".format(source, "; ".join(problems)))
     return params
+
+
+def from_texts(cls: Type[T], texts: Mapping[str, str], source: str) -> T:
+    """As from_dict, of values as they are typed, NAME:=VALUE; an empty one is not given."""
+    known = declared(cls)
+    given = {name: text for name, text in texts.items() if text}
+    return from_dict(cls, {n: _typed(text, known[n][1]) if n in known else text for n, text in given.items()}, source)
+
+
+def _typed(text: str, kind: Type[Any]) -> Any:
+    """A text as a value of a kind, as roslaunch reads it; the text itself if it is no such value."""
+    with contextlib.suppress(KeyError, ValueError):
+        return BOOLEANS[text.strip().lower()] if kind is bool else kind(text)
+    return text
 
 
 def _made(cls: Type[T], values: Mapping[str, Any]) -> T:

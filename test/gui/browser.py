@@ -117,7 +117,7 @@ class Tab:
         width, height = self.scene()
         aspect = width / height
         ahead, up = axes_of(aspect)
-        away = np.asarray(points) - view_of(corners_of(()), aspect)[0]
+        away = np.asarray(points) - view_of(corners_of(()), aspect, (ahead, up), FIELD)[0]
         scale = height / 2.0 / math.tan(FIELD / 2.0) / (away @ ahead)
         return np.array((width, height)) / 2.0 + np.stack([scale * (away @ RIGHT), -scale * (away @ up)], axis=1)
 

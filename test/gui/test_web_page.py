@@ -47,7 +47,7 @@ def test_a_click_on_the_floor_drives_the_robot_there_and_the_page_reports_no_err
     before = places()
     tab.click_floor(0.0, 0.0)
     wait_for(results.messages, "a result")
-    tab.wait_for_text(r"✓ REACHED \(-?0\.0\d, -?0\.0\d\), 0\.\d\d m off, [\d.]+ s")
+    tab.wait_for_text(r"goal\s+SUCCEEDED \(-?0\.0\d, -?0\.0\d\)[\s\S]*REACHED: 0\.\d+ m from the goal")
     assert math.hypot(*web.position()) < REACHED
     wait_for(tab.button("Cancel goal").is_disabled, "there is nothing to cancel")
     assert places() == before, "the buttons stay where they are"
@@ -97,8 +97,10 @@ PHONES = (UPRIGHT, TURNED, (390, 664), (750, 340))  # [pixel] the same of an iPh
 
 @pytest.mark.slow
 def test_on_a_phone_the_buttons_that_drive_are_in_reach_and_as_large_as_a_finger_and_name_no_keys(web, browser):
-    tab = Tab(browser, web.url, touch=True)
+    tab = Tab(browser, web.url, UPRIGHT, touch=True)
     tab.wait_for_text(READY)
+    wait_for(lambda: not tab.button("Forward").is_visible(), "they are folded, and do not cover the tabs")
+    tab.page.get_by_text("Drive", exact=True).tap()
 
     def is_in_reach(label, height):
         box = tab.button(label).bounding_box()  # None while the panel is laid out anew
@@ -121,7 +123,8 @@ def test_a_tab_that_is_chosen_on_a_phone_fills_the_panel(web, browser, size):
     tab.wait_for_text(READY)
     tab.page.get_by_role("tab", name="Plots").dispatch_event("click")
     title = tab.page.get_by_role("tabpanel").get_by_text("errors", exact=True)
-    wait_for(lambda: title.bounding_box()["y"] + PLOT < tab.button("Forward").bounding_box()["y"], "the plot is seen")
+    drive = tab.page.get_by_text("Drive", exact=True)
+    wait_for(lambda: title.bounding_box()["y"] + PLOT < drive.bounding_box()["y"], "the plot is seen")
     tab.close()
 
 
@@ -197,7 +200,7 @@ def test_cancel_ends_the_goal_and_stops_the_robot(web, tab):
         web.set_factor(1.0)
     assert result["status"]["status"] == GoalStatus.PREEMPTED
     wait_for(web.stands, "the robot stands")
-    tab.wait_for_text(r"✗ PREEMPTED \(.*\), it was cancelled")
+    tab.wait_for_text(r"goal\s+PREEMPTED \(.*\)[\s\S]*PREEMPTED: goal .*: it was cancelled")
 
 
 @pytest.mark.slow

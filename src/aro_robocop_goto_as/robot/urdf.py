@@ -2,7 +2,7 @@
 
 import copy
 import os
-from typing import List
+from typing import List, Optional
 
 from lxml import etree
 
@@ -48,17 +48,27 @@ def load_robot(path: str, figures: ModelFigures) -> RobotModel:
         )
 
 
-def _vector(text: str) -> Vector3:
+def vector(text: str) -> Vector3:
+    """Three numbers of a URDF; ValueError for anything else."""
     x, y, z = (float(word) for word in text.split())
     return (x, y, z)
 
 
-def _origin(element: Element) -> Pose3D:
-    """The <origin> of a joint, collision or inertial; the identity if it has none."""
+def origin_of(element: Element) -> Pose3D:
+    """The <origin> of a joint, collision, visual or inertial; the identity if it has none."""
     origin = element.find("origin")
     if origin is None:
         return Pose3D()
-    return Pose3D.from_xyz_rpy(_vector(origin.get("xyz", "0 0 0")), _vector(origin.get("rpy", "0 0 0")))
+    return Pose3D.from_xyz_rpy(vector(origin.get("xyz", "0 0 0")), vector(origin.get("rpy", "0 0 0")))
+
+
+def primitive(geometry: Element) -> Optional[Geometry]:
+    """The box, cylinder or sphere that an element of a <geometry> is; None for another one."""
+    if geometry.tag == "box":
+        return Box(vector(geometry.get("size", "")))
+    if geometry.tag == "cylinder":
+        return Cylinder(float(geometry.get("radius", "")), float(geometry.get("length", "")))
+    return Sphere(float(geometry.get("radius", ""))) if geometry.tag == "sphere" else None
 
 
 def _end_of(joint: Element, end: str) -> str:
@@ -113,7 +123,7 @@ class _Urdf:
             if ancestor not in self.joint_to:
                 break
             joint = self.joint_to[ancestor]
-            pose = compose3(_origin(joint), pose)
+            pose = compose3(origin_of(joint), pose)
             ancestor = _end_of(joint, "parent")
         raise self.error(f"no joints lead from link {link!r} to link {root!r}")
 
@@ -122,7 +132,7 @@ class _Urdf:
         return [
             PlacedShape(
                 f"{link.get('name')}/{number}",
-                compose3(self.pose_of(link.get("name")), _origin(collision)),
+                compose3(self.pose_of(link.get("name")), origin_of(collision)),
                 self.shape(link, collision),
             )
             for link in self.root.findall("link")
@@ -132,13 +142,10 @@ class _Urdf:
 
     def shape(self, link: Element, collision: Element) -> Geometry:
         """The geometry of a <collision>: a box, a cylinder or a sphere."""
-        for shape in collision.iterfind("geometry/*"):
-            if shape.tag == "box":
-                return Box(_vector(shape.get("size")))
-            if shape.tag == "cylinder":
-                return Cylinder(float(shape.get("radius")), float(shape.get("length")))
-            if shape.tag == "sphere":
-                return Sphere(float(shape.get("radius")))
+        for element in collision.iterfind("geometry/*"):
+            shape = primitive(element)
+            if shape is not None:
+                return shape
         raise self.error(f"link {link.get('name')!r}: expected a box, a cylinder or a sphere as its collision geometry")
 
     def wheel_radius(self, joint: Element) -> float:
@@ -151,7 +158,7 @@ class _Urdf:
 
     def wheel_separation(self, left: Element, right: Element) -> float:
         """The distance [m] between the joints of the wheels along the base's y axis."""
-        separation = _origin(left).position[1] - _origin(right).position[1]
+        separation = origin_of(left).position[1] - origin_of(right).position[1]
         if separation <= 0.0:
             raise self.error("expected {!r} to the left of {!r}".format(*WHEEL_JOINTS))
         return separation

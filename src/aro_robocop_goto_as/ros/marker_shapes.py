@@ -11,7 +11,6 @@ from ..errors import FrameError
 from ..geometry import Pose3D, compose3
 from ..shapes import Box, Cylinder, Geometry, Mesh, Sphere
 from ..web.scene import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Placed, Shape, color_of
-from ..web.text import short
 from ..world.model import Obstacle
 from .convert import from_quaternion
 
@@ -46,7 +45,7 @@ def to_shape(marker: Marker) -> Optional[Shape]:
         return None
     if (kind == MESH and (not points or len(points) % 3)) or (kind == LINE and len(points) < 2):
         return None
-    return Shape(kind, size, *color_of(color), points, short(marker.text[:500]))
+    return Shape(kind, size, *color_of(color), points, marker.text[:500])
 
 
 def obstacles(group: Group) -> List[Placed]:

@@ -1,5 +1,6 @@
 """Where the page listens, and which HTTP and WebSocket requests it answers: only those from its own pages."""
 
+import contextlib
 import ipaddress
 import os
 import socket
@@ -57,8 +58,21 @@ def default_host() -> str:
 
 
 def url(host: str, port: int) -> str:
-    """Where a browser on this machine finds a server that listens on this address, or on all addresses."""
-    return f"http://{'localhost' if is_loopback(host) or host in ANY_ADDRESS else host}:{port}"
+    """Where a browser finds a server that listens on this address, or on all addresses.
+
+    Other machines do not reach a container's own address, so there it is localhost, to which the port is forwarded.
+    """
+    if host in ANY_ADDRESS:
+        host = "localhost" if HOST_VARIABLE in os.environ else own_address()
+    return f"http://{'localhost' if is_loopback(host) else host}:{port}"
+
+
+def own_address() -> str:
+    """This machine's address in its network; localhost if it has none."""
+    with contextlib.suppress(OSError), socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.connect(("192.0.2.1", 9))  # an address for documentation; nothing is sent
+        return str(probe.getsockname()[0])
+    return "localhost"
 
 
 def is_loopback(address: str) -> bool:

@@ -7,12 +7,15 @@ import numpy as np
 
 from ..geometry import Vector3
 
+Axes = Tuple[np.ndarray, np.ndarray]  # of a camera: where it looks, and its upwards
+
 FIELD = 0.75  # [rad] of the cameras' view from its lower to its upper edge
 RIGHT = np.array((1.0, 0.0, 0.0))
 STEEP, FLAT = 0.9, 0.6  # sine of the angle at which cameras look down, in a tall part of a window and in a wide one
 ROOM, HEIGHT = 5.0, 0.4  # [m] along x and y, and along z, that are shown at least
 MAX_SHOWN = 10.0  # [m] from the origin, along x and y, at first; farther away a robot would be a few pixels
 DESK = 1.2  # width by height of the scene that "reset view" is made for
+LOWEST = 0.2  # [m] above the floor of a camera that somebody turns
 FILLED = 0.94  # share of the scene's width or height
 # The panel is beside the scene, on a phone below it, so that it covers nothing: viser's covers more than half of a
 # phone, and is as narrow there as elsewhere. And viser takes no notice of a press on its canvas that the canvas has
@@ -74,7 +77,7 @@ class BrowserCameras:
 
     def _set_first(self) -> None:
         first = self._server.initial_camera
-        first.position, first.look_at = view_of(self._corners, DESK)
+        first.position, first.look_at = view_of(self._corners, DESK, axes_of(DESK), FIELD)
 
     def _add(self, client: Any) -> None:
         shown = self._turn(client.camera)
@@ -84,6 +87,10 @@ class BrowserCameras:
             nonlocal shown
             if any(np.allclose(camera.position, known) for known in (shown, self._server.initial_camera.position)):
                 shown = self._turn(camera)
+            elif camera.position[2] < LOWEST:  # it was turned to below the floor, which hides everything
+                (x, y, z), look_at = camera.position, camera.look_at
+                camera.position = (x, y, max(-z, LOWEST))
+                camera.look_at = look_at
 
         client.camera.on_update(on_update)
 
@@ -91,7 +98,7 @@ class BrowserCameras:
         """Show the corners; returns the camera's position."""
         width, height = camera.image_width, camera.image_height
         aspect = width / height if width and height else DESK  # a hidden page has no size
-        position, look_at = view_of(self._corners, aspect)
+        position, look_at = view_of(self._corners, aspect, axes_of(aspect), FIELD)
         camera.position = position
         camera.look_at = look_at  # after the position, which moves it as well
         return position
@@ -101,27 +108,34 @@ def corners_of(places: Iterable[Vector3]) -> np.ndarray:
     """Corners (8, 3) [m] of a box around the origin and these places, as large as ROOM at least."""
     points = np.clip([(0.0, 0.0, 0.0), *places], -MAX_SHOWN, MAX_SHOWN)[:, :2]
     low, high = points.min(axis=0), points.max(axis=0)
-    half = np.maximum((high - low) / 2.0, ROOM / 2.0)
-    x, y = (low + high) / 2.0
-    return np.array(
-        [(x + i * half[0], y + j * half[1], z) for i in (-1.0, 1.0) for j in (-1.0, 1.0) for z in (0.0, HEIGHT)]
-    )
+    half, middle = np.maximum((high - low) / 2.0, ROOM / 2.0), (low + high) / 2.0
+    return box_corners(middle - half, middle + half, HEIGHT)
 
 
-def axes_of(aspect: float) -> Tuple[np.ndarray, np.ndarray]:
-    """Where a camera looks, and its upwards: steeper down in a taller scene, which a room then fills."""
-    down = min(max(1.2 / aspect, FLAT), STEEP)
+def box_corners(low: np.ndarray, high: np.ndarray, height: float) -> np.ndarray:
+    """Corners (8, 3) [m] of a box on the floor between two of its corners (x, y)."""
+    return np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (0.0, height)])
+
+
+def axes_of(aspect: float) -> Axes:
+    """The axes of the page's cameras: steeper down in a taller scene, which a room then fills."""
+    return axes_down(min(max(1.2 / aspect, FLAT), STEEP))
+
+
+def axes_down(down: float) -> Axes:
+    """The axes of a camera that sees x to the right; down: sine of the angle at which it looks down."""
     ahead = np.array((0.0, math.sqrt(1.0 - down**2), -down))
     return ahead, np.cross(RIGHT, ahead)
 
 
-def view_of(corners: np.ndarray, aspect: float) -> Tuple[np.ndarray, np.ndarray]:
+def view_of(corners: np.ndarray, aspect: float, axes: Axes, field: float) -> Tuple[np.ndarray, np.ndarray]:
     """The nearest camera that shows corners (n, 3) [m] in the middle of a scene; aspect: its width by its height.
 
+    field: [rad] of its view from the lower to the upper edge
     Returns its position and the point of the floor in the middle of the scene [m].
     """
-    look, above = axes_of(aspect)
-    half = FILLED * math.tan(FIELD / 2.0)  # of what is filled, one metre ahead of the camera
+    look, above = axes
+    half = FILLED * math.tan(field / 2.0)  # of what is filled, one metre ahead of the camera
     # A corner c is seen at ((c - p) @ RIGHT) / ((c - p) @ look) from a position p. So each edge of what is filled
     # limits p @ (RIGHT - edge * look), by the corner that is nearest to this edge; the same for `above`.
     limits = []

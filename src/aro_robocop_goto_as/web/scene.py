@@ -9,7 +9,7 @@ from ..geometry import Pose3D, Vector3
 
 Color = Tuple[int, int, int]  # red, green, blue from 0 to 255
 BOX, CYLINDER, SPHERE, MESH, LINE, TEXT = "box", "cylinder", "icosphere", "mesh_simple", "line_segments", "label"
-POINTS, IMAGE, FRAME, BODY = "point_cloud", "image", "frame", "body"
+POINTS, IMAGE, BODY = "point_cloud", "image", "body"
 MIN_CHANGE = 1e-4  # [m] and quaternion units: smaller changes of a pose are not sent
 LOOK = ("color", "opacity")
 CHANGEABLE = {  # what may differ between two shapes of a kind without drawing anew
@@ -28,7 +28,6 @@ class Shape:
     size: [m] of a box: x, y, z; of a cylinder: diameter, -, height along z; of a sphere and of points: diameter; of a
         line: width; of text: height; of an image: width, height
     points: [m] corners of a mesh, three for each triangle; of a line, one after the other; of points
-    text: that is shown, or the name beside a frame's axes
     parts: of a body: shapes with their poses in its frame
     image: (rows, columns, 4), row 0 at the lowest y; not compared, so another image needs another key in its group
     """
@@ -81,8 +80,6 @@ def _options(shape: Shape) -> Tuple[Dict[str, Any], Dict[str, Any]]:
         return {"anchor": "bottom-center"}, {"text": shape.text}
     if kind == IMAGE:
         return {**FLAT, "image": shape.image, "render_width": x, "render_height": y}, {}
-    if kind == FRAME:
-        return {"axes_length": 0.12, "axes_radius": 0.005}, {}
     raise ValueError(f"no shape of the kind {kind!r}")
 
 
@@ -151,7 +148,4 @@ class PageScene:
                 self._draw(f"{name}/{number}", part, part_pose)
             return handle
         fixed, changeable = _options(shape)
-        handle = getattr(self._api, f"add_{shape.kind}")(name, **fixed, **changeable, **where)
-        if shape.kind == FRAME and shape.text:
-            self._api.add_label(f"{name}/name", shape.text, anchor="top-left", font_screen_scale=0.8)
-        return handle
+        return getattr(self._api, f"add_{shape.kind}")(name, **fixed, **changeable, **where)

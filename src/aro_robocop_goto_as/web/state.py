@@ -17,10 +17,8 @@ class PageState:
     chosen: str = ""  # the robot that a visitor chose last
     answer: str = ""  # why the last request failed, empty if it did not
     simulated: bool = False  # a simulator has reported
-    slipped: Tuple[str, ...] = ()  # robots whose wheels slipped at an obstacle, so that odometry is wrong
     factor_asked: float = 0.0  # that the simulator is to reach; 0 for as fast as possible
     answering: bool = False  # there is a server of the selected robot, which publishes its status
-    waiting: str = ""  # the goal that the bridge keeps for a server that comes later, in words
     executing: Optional[bool] = None  # the selected robot's server executes a goal; None until it is known
     resets: int = 0  # how often robots were placed at their start again, or elsewhere
     root: str = ""  # the frame that the scene is drawn in

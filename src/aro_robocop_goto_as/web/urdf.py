@@ -5,8 +5,9 @@ from typing import Dict, Optional, Tuple
 import numpy as np
 
 from ..errors import RobotModelError, WorldError
-from ..geometry import Pose3D, Vector3
 from ..reading import Element, parse_xml, reading
+from ..robot.urdf import origin_of, primitive, vector
+from ..shapes import Box, Cylinder, Sphere
 from ..world.sdf.meshes import load_triangles
 from ..world.sdf.uris import locate
 from .scene import BODY, BOX, CYLINDER, MESH, SPHERE, Color, Placed, Shape, color_of
@@ -36,27 +37,24 @@ def read_links(text: str) -> Dict[str, Shape]:
 
 
 def _placed(visual: Element, looks: Dict[Optional[str], Look]) -> Optional[Placed]:
-    origin, geometry = visual.find("origin"), visual.find("geometry/*")
-    if geometry is None:
-        return None
-    shape = _shape(geometry, _look(visual.find("material"), looks))
-    xyz, rpy = ("0 0 0" if origin is None else origin.get(name, "0 0 0") for name in ("xyz", "rpy"))
-    return None if shape is None else (shape, Pose3D.from_xyz_rpy(_vector(xyz), _vector(rpy)))
+    geometry = visual.find("geometry/*")
+    shape = None if geometry is None else _shape(geometry, _look(visual.find("material"), looks))
+    return None if shape is None else (shape, origin_of(visual))
 
 
 def _shape(geometry: Element, look: Look) -> Optional[Shape]:
-    if geometry.tag == "box":
-        return Shape(BOX, _vector(geometry.get("size", "")), *look)
-    if geometry.tag in ("cylinder", "sphere"):
-        diameter = 2.0 * float(geometry.get("radius", ""))
-        if geometry.tag == "sphere":
-            return Shape(SPHERE, (diameter, diameter, diameter), *look)
-        return Shape(CYLINDER, (diameter, diameter, float(geometry.get("length", ""))), *look)
+    solid = primitive(geometry)
+    if isinstance(solid, Box):
+        return Shape(BOX, solid.size, *look)
+    if isinstance(solid, (Cylinder, Sphere)):
+        diameter = 2.0 * solid.radius
+        length = solid.length if isinstance(solid, Cylinder) else diameter
+        return Shape(CYLINDER if isinstance(solid, Cylinder) else SPHERE, (diameter, diameter, length), *look)
     uri = geometry.get("filename", "")
     if geometry.tag != "mesh" or not uri.startswith(MESHES):
         return None
     try:
-        triangles = load_triangles(locate(uri, "")) * np.array(_vector(geometry.get("scale", "1 1 1")))
+        triangles = load_triangles(locate(uri, "")) * np.array(vector(geometry.get("scale", "1 1 1")))
     except (WorldError, OSError):
         return None
     corners = tuple((x, y, z) for x, y, z in triangles.reshape(-1, 3).tolist())
@@ -69,8 +67,3 @@ def _look(material: Optional[Element], looks: Dict[Optional[str], Look]) -> Look
     if color is None:
         return looks.get(None if material is None else material.get("name"), PLAIN)
     return color_of(map(float, color.get("rgba", "").split()))
-
-
-def _vector(text: str) -> Vector3:
-    x, y, z = (float(word) for word in text.split())
-    return (x, y, z)

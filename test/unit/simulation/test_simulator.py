@@ -1,6 +1,7 @@
 """The simulator: rates, subscriptions, odometry, places, and several robots."""
 
 import math
+from dataclasses import replace
 from typing import Callable, Dict, List, Tuple
 
 import pytest
@@ -135,6 +136,13 @@ def test_map_of_a_world_shows_what_is_at_the_scanners_height_and_what_robots_rea
         int(row[int((x - occupancy.origin.x) / occupancy.resolution)]) for x in (0.0, 1.8, 1.849, 2.2)
     )
     assert (at_start, before_wall, wall, outside) == (FREE, FREE, OCCUPIED, FREE)
+
+
+def test_map_of_a_world_made_from_a_map_stays_as_it_was_loaded_when_a_model_is_deleted(simulator: Make) -> None:
+    sim = simulator("stage_1", ORIGIN)
+    loaded = sim.occupancy()
+    sim.change_world(replace(sim.world, occupancy=loaded, obstacles=()))
+    assert sim.occupancy() is loaded
 
 
 @pytest.mark.parametrize("params", DRIVES)

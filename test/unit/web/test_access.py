@@ -1,7 +1,10 @@
 """Which requests the page answers, and where it listens."""
 
+import socket
+
 import pytest
 
+from aro_robocop_goto_as.web import access
 from aro_robocop_goto_as.web.access import is_loopback, refusal, url
 
 PROXY = "https://proxy.example"
@@ -51,6 +54,15 @@ def test_loopback_addresses_are_told_from_those_that_others_reach() -> None:
     assert [is_loopback(name) for name in ("0.0.0.0", "::", "192.168.1.5", "pc-7", "")] == [False] * 5
 
 
-def test_a_server_on_all_addresses_is_opened_at_localhost() -> None:
-    assert {url(host, 80) for host in ("127.0.0.1", "::1", "0.0.0.0", "::")} == {"http://localhost:80"}
+def test_a_server_on_all_addresses_is_opened_at_this_machines_own_but_in_a_container_at_localhost(monkeypatch) -> None:
+    monkeypatch.setattr(access, "own_address", lambda: "192.0.2.7")
+    assert {url(host, 80) for host in ("127.0.0.1", "::1")} == {"http://localhost:80"}
+    assert {url(host, 80) for host in ("0.0.0.0", "::")} == {"http://192.0.2.7:80"}
     assert url("192.168.1.5", 8090) == "http://192.168.1.5:8090"
+    monkeypatch.setenv(access.HOST_VARIABLE, "0.0.0.0")
+    assert url("0.0.0.0", 80) == "http://localhost:80"
+
+
+def test_this_machines_own_address_is_one_that_it_can_listen_on() -> None:
+    with socket.socket() as server:
+        server.bind((access.own_address(), 0))

@@ -8,7 +8,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.web.page import FIELD, FILLED, HEIGHT, MAX_CLICK, RIGHT, BrowserCameras, axes_of, floor_point
+from aro_robocop_goto_as.web.page import (
+    FIELD,
+    FILLED,
+    HEIGHT,
+    LOWEST,
+    MAX_CLICK,
+    RIGHT,
+    BrowserCameras,
+    axes_of,
+    floor_point,
+)
 
 SCENES = [(393, 400), (1081, 1099), (250, 900), (457, 293), (955, 800), (580, 620), (1585, 1000)]  # [pixel]
 
@@ -102,6 +112,14 @@ def test_a_view_that_somebody_has_chosen_stays_when_a_phone_is_turned() -> None:
     camera.image_width, camera.image_height = camera.image_height, camera.image_width
     report()
     assert camera.position is chosen
+
+
+@pytest.mark.parametrize("height, shown", [(-3.0, 3.0), (0.05, LOWEST), (1.0, 1.0)])
+def test_a_camera_that_is_turned_to_below_the_floor_looks_at_the_same_point_from_above(height, shown) -> None:
+    _, camera, report = camera_that_reports()
+    camera.position, camera.look_at = (1.0, 2.0, height), (0.5, 0.5, 0.0)
+    report()
+    assert (tuple(camera.position), camera.look_at) == ((1.0, 2.0, shown), (0.5, 0.5, 0.0))
 
 
 @given(st.floats(-20, 20), st.floats(-20, 20), st.floats(0.1, 20), st.floats(-9, 9), st.floats(-9, 9))

@@ -10,7 +10,7 @@ from ...names import COMMAND_VARIABLE, SERVER, WEB, robocop
 from ...param_loading import from_dict
 from ...probes import master, x_display
 from ...simulation.params import SimParams
-from ...web.access import default_host, url
+from ...web.access import default_host, is_loopback, url
 from ...web.params import WebParams
 
 DEFAULT_WORLD = SimParams().world.world
@@ -79,9 +79,11 @@ def is_page(node: Any) -> bool:
 
 
 def _page(arguments: str) -> str:
-    """The web page's address on this machine, from the arguments of its node."""
+    """The web page's address, from the arguments of its node; one that only this machine reaches says so."""
     given = dict(re.findall(r"\b(web_host|web_port):=(\S+)", arguments))
-    return url(given.get("web_host") or default_host(), given.get("web_port", WebParams.web_port))
+    host = given.get("web_host") or default_host()
+    address = url(host, given.get("web_port", WebParams.web_port))
+    return f"{address} (from a phone with web_host:=0.0.0.0)" if is_loopback(host) else address
 
 
 def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:

@@ -1,17 +1,16 @@
 """Refuses impossible arguments of a launch file, NAME:=VALUE on the command line, before anything is started."""
 
-import contextlib
 import datetime
 import os
 from pathlib import Path
-from typing import Any, Dict, Mapping
+from typing import Any, Mapping, Type, TypeVar
 
 import rosparam  # with its tags for YAML, such as !degrees
 
 from ...errors import ParameterError
 from ...geometry import Pose2D
 from ...launch_arguments import TRUE
-from ...param_loading import declared, from_dict
+from ...param_loading import declared, from_texts
 from ...reading import reading
 from ...robot.model_names import urdf_of
 from ...simulation.params import SimParams
@@ -21,13 +20,13 @@ from ...world.load import RANDOM, find_world
 from ...world.spawn_texts import parse_count, parse_robots, parse_spawn
 from ..share import share
 
-_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+T = TypeVar("T")
 
 
-def _values(given: Mapping[str, str], cls: type) -> Dict[str, Any]:
-    """What roslaunch makes of the arguments that are parameters of a dataclass."""
+def _params(given: Mapping[str, str], cls: Type[T]) -> T:
+    """Those of the arguments that are parameters of a dataclass."""
     known = declared(cls)
-    return {name: _value(text, known[name][1]) for name, text in given.items() if text and name in known}
+    return from_texts(cls, {name: text for name, text in given.items() if name in known}, "launch arguments")
 
 
 def check(given: Mapping[str, str]) -> None:
@@ -35,7 +34,7 @@ def check(given: Mapping[str, str]) -> None:
 
     A world is found, but not read. The simulator checks what its parameter files say.
     """
-    p = from_dict(SimParams, _values(given, SimParams), "launch arguments")
+    p = _params(given, SimParams)
     if p.world.world != RANDOM:
         find_world(p.world.world, os.path.join(share(), "worlds"))
     urdf_of(p.robots.model, share())
@@ -49,20 +48,13 @@ def check(given: Mapping[str, str]) -> None:
         for request in parse_robots(text):
             urdf_of(request.model or p.robots.model, share())
     if given.get("web") in TRUE:
-        from_dict(WebParams, _values(given, WebParams), "launch arguments")
+        _params(given, WebParams)
     for name, value in given.items():
         if name.endswith("config") and value.endswith(".yaml") and "$(" not in value:
             if not os.path.isfile(value):
                 raise ParameterError(f"{name}: there is no file {os.path.abspath(value)}")
             with reading(value, ParameterError, "parameters in YAML"):
                 require_parameters(rosparam.yaml.safe_load(Path(value).read_text(encoding="utf-8")) or {}, value)
-
-
-def _value(text: str, kind: type) -> Any:
-    """What roslaunch makes of an argument's text; the text itself if it is no value of this kind."""
-    with contextlib.suppress(KeyError, ValueError):
-        return _BOOLEANS[text.strip().lower()] if kind is bool else kind(text)
-    return text
 
 
 def _require_profile(name: str) -> None:

@@ -9,13 +9,12 @@ import numpy as np
 import yaml
 
 from ...names import prefixed
+from ...web.page import axes_down, box_corners, view_of
 from ..share import share
 
 IN_WORLD = ("world", "map", "odom")  # frames that do not move with the robot
 PITCH = 1.05  # [rad] x points to the right, y up the screen, seen steeply from above
 FIELD_OF_VIEW = math.radians(45.0)  # [rad] vertical, of every RViz camera: Ogre's default
-MARGIN = 1.04  # of the distance, so that nothing touches the edges
-LOWERED = 0.07  # of the depth: the camera sees more of what is far away than of what is near
 HEIGHT = 0.5  # [m] of the walls; what is higher may reach out of the view
 ROOM = 2.5  # [m] shown on each side of the origin where there are no obstacles
 AROUND_ROBOT = 1.0  # [m] its text is about two metres wide
@@ -106,15 +105,7 @@ def world_box(obstacles: np.ndarray, start: Tuple[float, float]) -> Box:
 
 
 def camera(box: Box, aspect: float) -> Tuple[float, float, float]:
-    """Distance and focal point x, y [m] of the orbit camera that just shows a box in a view of this width / height.
-
-    A point p relative to the focal point is visible if |up . p| <= tan(FIELD_OF_VIEW / 2) (distance + ahead . p), with
-    the camera's axes up and ahead. The same holds for the width, times `aspect`.
-    """
-    low, high = box
-    focus = (low + high) / 2.0 - (0.0, LOWERED * (high[1] - low[1]))
-    x, y, z = np.meshgrid((low[0], high[0]) - focus[0], (low[1], high[1]) - focus[1], (0.0, HEIGHT))
-    up, ahead = y * math.sin(PITCH) + z * math.cos(PITCH), y * math.cos(PITCH) - z * math.sin(PITCH)
-    slope = math.tan(FIELD_OF_VIEW / 2.0)
-    distance = (np.maximum(abs(up), abs(x) / max(aspect, 0.1)) / slope - ahead).max()
-    return MARGIN * float(distance), float(focus[0]), float(focus[1])
+    """Distance and focal point x, y [m] of the orbit camera that just shows a box in a view of this width / height."""
+    axes = axes_down(math.sin(PITCH))
+    position, focus = view_of(box_corners(*box, HEIGHT), max(aspect, 0.1), axes, FIELD_OF_VIEW)
+    return float(np.linalg.norm(position - focus)), float(focus[0]), float(focus[1])

@@ -145,7 +145,7 @@ class GotoNode:
 
     def set_terminal_state(self, execution: GoalExecution, ending: Ending) -> None:
         """Report how the goal ended, once."""
-        execution.outcome, self.display.state = ending.outcome, ending.message
+        execution.outcome, self.display.state = ending.outcome, ending.outcome.value
         log = rospy.loginfo if ending.outcome in (Outcome.REACHED, Outcome.PREEMPTED) else rospy.logwarn
         log("%s", ending.message)
         result = GoToPositionResult(ending.outcome is Outcome.REACHED, ending.message)

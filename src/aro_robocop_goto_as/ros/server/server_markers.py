@@ -1,6 +1,5 @@
 """The server's markers for RViz: the newest goal and its tolerance, the safety cone, the robot, its state and trail."""
 
-import textwrap
 from typing import Optional, Sequence
 
 import rospy
@@ -18,7 +17,6 @@ from .inputs import Inputs
 from .tuning import Tuning
 
 IDLE = "idle"  # the state before the first goal, and after a reset
-TEXT_WIDTH = 26  # characters per line
 MARKER_PERIOD = 0.1  # [s]
 NEAR_FACTOR = 2.0  # the safety cone turns yellow within this multiple of the obstacle distance
 
@@ -53,7 +51,7 @@ def server_markers(
     if odom is not None:
         base, frame = odom.message.child_frame_id, odom.message.header.frame_id
         made.append(markers.robot_ring(base))
-        made.append(markers.text("state", textwrap.fill(state.partition(";")[0], TEXT_WIDTH), base))
+        made.append(markers.text("state", state, base))
         made.append(markers.trail(trail, frame))
         if newest is not None:
             color = markers.goal_color(newest.outcome is None, newest.outcome is Outcome.REACHED)

@@ -3,23 +3,22 @@
 import sys
 import threading
 import time
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, List, Optional, Sequence
 
 import rosgraph
 import rospy
-import yaml
 
 from ...errors import ParameterError, RobocopError
 from ...names import WEB
-from ...param_loading import from_dict
+from ...param_loading import from_texts
 from ...web import access, text
-from ...web.frames import FrameTree
 from ...web.page import BrowserCameras, set_up
 from ...web.params import WebParams
 from ...web.scene import PageScene, color_of
 from ...web.state import PageState, SharedState
 from .. import markers
 from ..node_main import answer_help, end_with_master, node
+from .frames import Frames
 from .goals import GoalsPart
 from .part import Context, Inbox, Part
 from .plots import plots
@@ -35,7 +34,6 @@ from .view import ViewPart
 
 RATE = 12.0  # [Hz, wall] at which pages are updated; scans come at 5 or 10 Hz
 IDLE_PERIOD = 1.0  # [s, wall] between two checks without a visitor
-TEXTS = ("web_host", "web_frame", "web_origins", "replay")  # arguments that are not YAML
 SECTOR = {"free": markers.FREE, "near": markers.NEAR, "too near": markers.BLOCKED, "no scan": markers.UNKNOWN}
 ASK_PERIOD = 1.0  # [s, wall] between two requests of the parts to the ROS master
 
@@ -45,38 +43,29 @@ def load_params(arguments: Sequence[str]) -> WebParams:
 
     Arguments for ROS are left out: __name:=x, and remappings of absolute names, such as /tf:=/x/tf.
     """
-    raw: Dict[str, Any] = {"web_host": access.default_host()}
     for argument in arguments:
-        name, given, value = argument.partition(":=")
-        if not given:
+        if ":=" not in argument:
             raise ParameterError(f"arguments of {WEB}: expected NAME:=VALUE, got {argument!r}")
-        if name.startswith(("_", "/")) or not value:
-            continue
-        try:
-            raw[name] = value if name in TEXTS else yaml.safe_load(value)
-        except yaml.YAMLError as error:
-            raise ParameterError(f"arguments of {WEB}: {name}: {error}") from error
-    return from_dict(WebParams, raw, f"arguments of {WEB}")
+    given = {"web_host": access.default_host()}
+    mappings = rosgraph.names.load_mappings(arguments)
+    given.update((name, text) for name, text in mappings.items() if text and name[0] not in "_/")
+    return from_texts(WebParams, given, f"arguments of {WEB}")
 
 
 def add_parts(context: Context, p: WebParams) -> List[Part]:
     """Add what the panel shows below the status: goals, tabs, the buttons that drive."""
     live = context.state.now.live
     parts: List[Part] = [ReplayPart(context, p.replay_waits)] if p.replay else []
-    goals = GoalsPart(context)
-    parts.append(goals)
+    parts.append(GoalsPart(context))
     tabs = context.server.gui.add_tab_group()
-    with tabs.add_tab("Control" if live else "Goals"):
-        parts.append(TimePart(context))  # above the history, which grows
-        goals.add_history()
+    with tabs.add_tab("Control" if live else "View"):
+        parts += [TimePart(context), ViewPart(context)]
         sector = {words: color_of((c.r, c.g, c.b, c.a))[0] for words, c in SECTOR.items()}
         context.server.gui.add_html(text.legend("sector ahead", sector))
         if live and LAB.is_file():
             context.server.gui.add_html(text.link("/lab.md", "The lab, step by step"))
     with tabs.add_tab("Plots"):
         parts += plots(context)
-    with tabs.add_tab("View"):
-        parts.append(ViewPart(context))
     parts.append(TeleopPart(context, p.web_linear_velocity, p.web_angular_velocity))
     return parts
 
@@ -91,12 +80,11 @@ class WebNode:
         self._server = server
         self._state = SharedState(PageState(live=not p.replay and not p.view_only, recorded=bool(p.replay)))
         scene, requests = PageScene(server.scene), Requests(self._state)
-        context = Context(server, scene, self._state, requests, FrameTree(), p.web_frame)
+        context = Context(server, scene, self._state, requests, Frames(), p.web_frame)
         set_up(server)
         cameras = BrowserCameras(server)
         self._parts = [RobotsPart(context), StatusPart(context), *add_parts(context, p), SceneryPart(context, cameras)]
-        # Topics that are always received; of the system and of the selected robot, while there is a visitor.
-        self._always, self._system, self._detail = Inbox(), Inbox(), Inbox()
+        self._system, self._detail = Inbox(), Inbox()  # topics of the system and of the selected robot
         self._robot: Optional[str] = None  # the robot with subscribed topics; None while there is no visitor
         self._asked = 0.0  # [s, wall] when the parts asked the master last
         self._visitors = threading.Event()  # a browser has come or gone
@@ -108,8 +96,8 @@ class WebNode:
         while not rospy.is_shutdown():
             visited = bool(self._server.get_clients())
             self._connect(visited)
-            for inbox in (self._system, self._detail, self._always):  # feedback before the result
-                inbox.deliver()
+            self._system.deliver()
+            self._detail.deliver()
             if visited:
                 with self._server.atomic():
                     for part in self._parts:
@@ -136,7 +124,7 @@ class WebNode:
         if time.monotonic() - self._asked >= ASK_PERIOD:
             self._asked = time.monotonic()
             for part in self._parts:
-                part.ask_master(self._state.now, self._always)
+                part.ask_master(self._state.now)
 
 
 def consequence(arguments: Sequence[str]) -> str:

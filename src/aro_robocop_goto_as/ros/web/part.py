@@ -9,9 +9,9 @@ import rospy
 
 from ...geometry import Pose3D, compose3
 from ...web import text
-from ...web.frames import FrameTree
 from ...web.scene import PageScene
 from ...web.state import PageState, SharedState
+from .frames import LATEST, Frames
 from .requests import Requests
 
 Handler = Callable[[float, Any], None]  # time at which a message was received [s, monotonic], the message
@@ -25,11 +25,11 @@ class Context:
     scene: PageScene
     state: SharedState
     requests: Requests
-    frames: FrameTree
+    frames: Frames
     fixed_frame: str  # that the scene is drawn in where it is known
 
-    def locate(self, frame: str, stamp: Optional[float] = None) -> Optional[Pose3D]:
-        """The pose of a frame in the frame of the scene: the newest, or the one that is nearest to a stamp [s]."""
+    def locate(self, frame: str, stamp: rospy.Time = LATEST) -> Optional[Pose3D]:
+        """The pose of a frame in the frame of the scene, the newest or that at a stamp; None if it is not known yet."""
         return self.frames.lookup(self.state.now.root, frame.lstrip("/"), stamp)
 
     def place(self, robot: str, x: float, y: float) -> str:
@@ -87,11 +87,8 @@ class Part:
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
         """Forget the previous robot, and subscribe to the topics of the newly selected robot."""
 
-    def ask_master(self, state: PageState, inbox: Inbox) -> None:
-        """Ask the ROS master as needed, and subscribe to topics that are received also without a browser.
-
-        Called once a second. The inbox is never closed.
-        """
+    def ask_master(self, state: PageState) -> None:
+        """Ask the ROS master as needed; called once a second."""
 
     def show(self, state: PageState) -> None:
         """Show the received messages in panel and scene."""

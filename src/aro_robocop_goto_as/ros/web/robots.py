@@ -1,10 +1,12 @@
 """The robots, drawn from their descriptions where tf says that their links are."""
 
 import xmlrpc.client
+from functools import partial
 from typing import Dict, Iterable, Optional, Set, Tuple
 
 import rosgraph
 import rospy
+from geometry_msgs.msg import Transform, TransformStamped, Vector3
 from nav_msgs.msg import Odometry
 from tf2_msgs.msg import TFMessage
 
@@ -14,7 +16,6 @@ from ...web.scene import Group, Shape
 from ...web.state import PageState
 from ...web.urdf import read_links
 from ..graph import Topic, published_topics
-from ..marker_shapes import to_pose
 from .part import Context, Inbox, Part
 
 DESCRIPTION, ODOM = "robot_description", "/odom"
@@ -29,39 +30,25 @@ class RobotsPart(Part):
         super().__init__(context)
         self._links: Dict[str, Dict[str, Shape]] = {}  # by robot and name
         self._moved: Set[str] = set()  # frames with a transform on tf
-        self._true = ""  # the base frame that is shown at its true place, as its odometry is wrong; empty if none
 
     def subscribe(self, inbox: Inbox) -> None:
         inbox.subscribe("/tf", TFMessage, self._on_tf, TRANSFORMS)
-        inbox.subscribe("/tf_static", TFMessage, self._on_tf, None)
+        inbox.subscribe("/tf_static", TFMessage, partial(self._on_tf, is_static=True), None)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        self._true = ""
         inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry)
-        inbox.subscribe(absolute(robot, "ground_truth_odom"), Odometry, self._on_truth)
 
     def _on_odometry(self, _: float, message: Odometry) -> None:
         """Store odometry as a transform, in case nobody publishes this transform, as in the original lab."""
-        parent, child = message.header.frame_id.lstrip("/"), message.child_frame_id.lstrip("/")
-        pose = to_pose(message.pose.pose.position, message.pose.pose.orientation)
-        if pose is not None and child not in self._moved and child != self._true:
-            self.context.frames.update(parent, child, pose, message.header.stamp.to_sec())
+        at, child = message.pose.pose.position, message.child_frame_id
+        if child.lstrip("/") not in self._moved:
+            motion = Transform(Vector3(at.x, at.y, at.z), message.pose.pose.orientation)
+            self.context.frames.update(TransformStamped(message.header, child, motion))
 
-    def _on_truth(self, _: float, message: Odometry) -> None:
-        """Store the true pose instead of odometry's, which may be outside of the room, once the wheels have slipped."""
-        state, pose = self.context.state.now, to_pose(message.pose.pose.position, message.pose.pose.orientation)
-        self._true = message.child_frame_id if pose is not None and state.selected in state.slipped else ""
-        if pose is not None and self._true:
-            self.context.frames.update(message.header.frame_id, self._true, pose, message.header.stamp.to_sec())
-
-    def _on_tf(self, _: float, message: TFMessage) -> None:
+    def _on_tf(self, _: float, message: TFMessage, is_static: bool = False) -> None:
         for stamped in message.transforms:
-            pose = to_pose(stamped.transform.translation, stamped.transform.rotation)
-            if pose is not None:
-                parent, child = stamped.header.frame_id.lstrip("/"), stamped.child_frame_id.lstrip("/")
-                self._moved.add(child)
-                if child != self._true:
-                    self.context.frames.update(parent, child, pose, stamped.header.stamp.to_sec())
+            self._moved.add(stamped.child_frame_id.lstrip("/"))
+            self.context.frames.update(stamped, is_static)
 
     def show(self, state: PageState) -> None:
         """Draw all robots. If nobody publishes the fixed frame, as without localization, odom takes its place."""
@@ -78,7 +65,7 @@ class RobotsPart(Part):
         poses = (context.locate(context.frame_of(state.selected, base)) for base in BASES)
         context.state.change(pose=next((pose for pose in poses if pose is not None), None))
 
-    def ask_master(self, state: PageState, inbox: Inbox) -> None:
+    def ask_master(self, state: PageState) -> None:
         try:
             robots = robots_of(published_topics()) or ("",)
         except (OSError, rosgraph.MasterException):

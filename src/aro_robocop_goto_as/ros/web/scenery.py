@@ -1,17 +1,17 @@
 """The surroundings of the robots: the simulator's and the server's markers, the scan and the map."""
 
 from dataclasses import replace
-from typing import Any, List, Optional, Tuple
+from typing import Any, Optional
 
 import numpy as np
 from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import LaserScan
 from visualization_msgs.msg import MarkerArray
 
-from ...geometry import Pose3D, compose3
+from ...geometry import Pose3D, compose3, rotation_matrix
 from ...names import SERVER, SIMULATOR, absolute
 from ...web.page import BrowserCameras
-from ...web.scene import IMAGE, POINTS, TEXT, Group, Shape
+from ...web.scene import IMAGE, POINTS, Shape
 from ...web.state import PageState
 from ..marker_shapes import MarkerStore, to_pose
 from .part import Context, Inbox, Part
@@ -19,8 +19,7 @@ from .part import Context, Inbox, Part
 DRAWN_BY_MODEL = ("robots", "noses")  # the simulator's markers for robots; the page draws their models instead
 DRAWN_BY_PAGE = ("trail",)  # markers of the server that the page draws itself, for any server
 SCAN = Shape(POINTS, (0.025, 0.025, 0.025), (255, 85, 70))
-LABEL_WIDTH, LABEL_HEIGHT = 0.9, 0.3  # [m] of a short text on a phone that shows a room of 5 m
-MAX_PARTED = 20  # texts; those of more robots would form towers
+PATIENCE = 1.0  # [s] between the stamps of a scan that waits for its transform and of one that takes its place
 MAP_HEIGHT = 0.003  # [m] above the grid, below goal and trail
 MAX_MAP_CELLS = 2000  # cells along a side; larger maps are thinned out
 UNKNOWN, FREE, OCCUPIED = (90, 95, 105, 120), (205, 210, 216, 60), (20, 22, 26, 255)  # red, green, blue, opacity
@@ -55,7 +54,9 @@ class SceneryPart(Part):
         self._map = message
 
     def _on_scan(self, _: float, message: LaserScan) -> None:
-        self._scan = message
+        waiting = self._scan
+        if waiting is None or abs((message.header.stamp - waiting.header.stamp).to_sec()) > PATIENCE:
+            self._scan = message
 
     def show(self, state: PageState) -> None:
         scene, locate = self.context.scene, self.context.locate
@@ -63,15 +64,14 @@ class SceneryPart(Part):
         if without_robots and not scene.draws("world"):
             self._cameras.show(pose.position for _, pose in without_robots.values())
         world = without_robots if scene.draws("robots") else self._world.placed(locate)
-        server = self._server.placed(locate, DRAWN_BY_PAGE)
-        part_labels(world, server)
         scene.show("world", world)
-        scene.show("server", server)
-        pose = None if self._scan is None else locate(self._scan.header.frame_id, self._scan.header.stamp.to_sec())
+        scene.show("server", self._server.placed(locate, DRAWN_BY_PAGE))
+        pose = None if self._scan is None else locate(self._scan.header.frame_id, self._scan.header.stamp)
         if self._scan is not None and pose is not None:  # the scan stays where its robot was when it was measured
-            rows: Any = scan_points(self._scan).tolist()
-            points = tuple((x, y, z) for x, y, z in rows)
-            scene.show("scan", {"scan": (replace(SCAN, points=points), pose)} if points else {})
+            # In the scene's frame: a slow browser moves a shape some time before it draws the shape's new points.
+            rows: Any = scan_points(self._scan) @ rotation_matrix(pose.orientation).T + pose.position
+            points = tuple((x, y, z) for x, y, z in rows.tolist())
+            scene.show("scan", {"scan": (replace(SCAN, points=points), Pose3D())} if points else {})
             self._scan = None
         pose = None if self._map is None else locate(self._map.header.frame_id)
         if self._map is not None and pose is not None:
@@ -86,20 +86,6 @@ class SceneryPart(Part):
             half = Pose3D((width / 2.0, height / 2.0, MAP_HEIGHT))
             image = Shape(IMAGE, (width, height, 0.0), image=map_image(message.data, info.width, info.height))
             self.context.scene.show("map", {object(): (image, compose3(compose3(fixed_from_map, origin), half))})
-
-
-def part_labels(*groups: Group) -> None:
-    """Raise texts that would cover an earlier text in the first view, which looks along y and down at the floor."""
-    seen: List[Tuple[float, float]] = []  # x, and y + z [m], in which a text's place in the picture grows upwards
-    for group in groups:
-        for key, (shape, pose) in group.items():
-            if shape.kind != TEXT or len(seen) == MAX_PARTED:
-                continue
-            x, y, z = pose.position
-            while any(abs(x - other) < LABEL_WIDTH and abs(y + z - up) < LABEL_HEIGHT for other, up in seen):
-                z += LABEL_HEIGHT
-            seen.append((x, y + z))
-            group[key] = (shape, replace(pose, position=(x, y, z)))
 
 
 def scan_points(scan: LaserScan) -> np.ndarray:

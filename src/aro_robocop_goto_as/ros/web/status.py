@@ -1,6 +1,5 @@
 """Problems, the state of simulator and server, the answer to the last request, the choice of the robot."""
 
-import re
 import time
 from typing import Any, List, Optional, Tuple
 
@@ -17,7 +16,7 @@ from ..connected_nodes import publishers_of
 from .part import Context, Inbox, Part
 
 SILENCE_TIMEOUT = 4.0  # [s, wall] the simulator, which reports once per second, counts as gone after it
-WAITS = re.compile(r"; goal (x \S+ y \S+ in \S+) waits for it")  # in the bridge's report; shown as the newest goal
+READY = (f"{ACTION} is ready", "goal x ")  # how the bridge's reports of a server that answers begin
 
 
 class StatusPart(Part):
@@ -44,29 +43,27 @@ class StatusPart(Part):
         inbox.subscribe(absolute(SIMULATOR, "status"), SimStatus, self._on_sim)
 
     def subscribe_to_robot(self, inbox: Inbox, robot: str) -> None:
-        self._on_bridge(0.0, String(""))
+        self._bridge = ""
         self._reports = inbox.subscribe(absolute(robot, f"{BRIDGE}/status"), String, self._on_bridge)
 
     def _on_sim(self, at: float, message: SimStatus) -> None:
         self._sim, self._sim_at = message, at
-        slipped = tuple(message.slipped)
-        self.context.state.change(simulated=True, slipped=slipped, factor_asked=message.factor_asked)
+        self.context.state.change(simulated=True, factor_asked=message.factor_asked)
 
     def _on_bridge(self, _: float, message: String) -> None:
-        self._bridge, found = WAITS.sub("", message.data), WAITS.search(message.data)
-        self.context.state.change(waiting=found[1] if found else "")
+        self._bridge = message.data
 
-    def ask_master(self, state: PageState, inbox: Inbox) -> None:
+    def ask_master(self, state: PageState) -> None:
         asked = state.live and self._sim is None and self.context.server.get_clients()  # a visitor may have to wait
         self._no_simulator = master.no_simulator(master.master_uri()) if asked else ""
 
     def show(self, state: PageState) -> None:
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
         if self._bridge and not state.recorded and self._reports is not None and not publishers_of(self._reports):
-            self._on_bridge(0.0, String(""))  # it is gone
+            self._bridge = ""  # it is gone
         silence = 0.0 if self._sim is None or state.recorded else time.monotonic() - self._sim_at
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
-        problem = gone if silence > SILENCE_TIMEOUT else self._no_simulator or _slip(state)
+        problem = gone if silence > SILENCE_TIMEOUT else self._no_simulator or self._slip()
         self._alert.content = text.alert(problem)
         known = state.live or self._sim is not None or self._bridge  # the recording of a grading has neither
         self._overview.content = text.table(self._rows(state)) if known else ""
@@ -82,17 +79,15 @@ class StatusPart(Part):
             speed = "paused" if sim.paused else f"factor {sim.factor_reached:.2f}"
             rows += [("world", sim.world), ("time", f"{sim.stamp.to_sec():.0f} s, {speed}")]
         answers = "answers, no report from the bridge" if state.answering else "does not publish its status"
-        # What the bridge adds to that, and its words for a goal, the page shows elsewhere.
-        report = "ready" if self._bridge.startswith((f"{ACTION} is ready", "goal x ")) else self._bridge
+        report = "ready" if self._bridge.startswith(READY) else self._bridge
         return [*rows, ("server", "executes a goal" if state.executing else report or answers)]
 
-
-def _slip(state: PageState) -> str:
-    """What to know of robots whose odometry is wrong; empty if there are none."""
-    if not state.slipped:
-        return ""
-    robots = " and ".join(filter(None, state.slipped))
-    return (
-        f"The wheels {robots and f'of {robots} '}slipped at an obstacle: odometry is wrong, and goals lead elsewhere. "
-        "Reset puts robots and their odometry back."
-    )
+    def _slip(self) -> str:
+        """What to know of robots whose odometry is wrong; empty if there are none."""
+        if self._sim is None or not self._sim.slipped:
+            return ""
+        robots = " and ".join(filter(None, self._sim.slipped))
+        return (
+            f"The wheels {robots and f'of {robots} '}slipped at an obstacle: odometry is wrong, and goals lead "
+            "elsewhere. Reset puts robots and their odometry back."
+        )

@@ -30,7 +30,9 @@ PAD = (  # in the order of the grid's cells
 # The panel has no rows of buttons: this style arranges the buttons of its folder as the arrow keys of a keyboard. The
 # folder stays at the lower edge of a panel that is scrolled, where a thumb reaches it. 44 px is the smallest control
 # for a finger by the W3C (WCAG 2.5.5) and by Apple. Hot keys are shown only where there is a mouse.
-STYLE = """<style class="pad">
+# On a phone held upright the open folder would cover the tabs, so it is folded once; this style is loaded more often.
+STYLE = """<style class="pad" onload="window.padIsPlaced ??= (matchMedia('(max-width: 36em)').matches &&
+  [...document.querySelectorAll('div')].find(e => e.firstChild?.nodeValue === 'Drive')?.click(), true)">
 div:has(> div > .pad) {
   display: grid; grid-template-columns: repeat(3, 1fr); padding: 0.6em 0.3em 0;
   & > div { margin-inline: 0.2em !important; button { padding-inline: 0; touch-action: none; } }

@@ -24,7 +24,7 @@ class TimePart(Part):
         act = {
             "Pause": lambda: call("pause", "pause", Trigger),
             "Run": lambda: call("continue", "unpause", Trigger),
-            "Reset": self._reset,
+            "Reset": lambda: call("reset", "reset", Reset, 0),
         }
         self._folder = gui.add_folder("Time", visible=False)
         with self._folder:
@@ -39,10 +39,6 @@ class TimePart(Part):
                 call(f"factor {factor:g}", "set_parameters", Reconfigure, config)
 
         self._factor.on_update(on_update)
-
-    def _reset(self) -> None:
-        self.context.requests.call("reset", "reset", Reset, 0)
-        self.context.state.change(resets=self.context.state.now.resets + 1)
 
     def show(self, state: PageState) -> None:
         self._folder.visible = state.live and state.simulated

@@ -1,17 +1,15 @@
-"""Display options: frames, the trail and the camera's image."""
+"""Display options: the trail and the camera's image."""
 
-import math
 import time
 from dataclasses import replace
-from typing import Dict, List, Mapping, Optional
+from typing import Optional
 
 import numpy as np
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image
 
-from ...geometry import Pose3D
 from ...names import absolute
-from ...web.scene import FRAME, LINE, Group, Shape
+from ...web.scene import LINE, Group, Shape
 from ...web.state import PageState
 from ..trail import Trail
 from .part import Context, Inbox, Part
@@ -19,7 +17,6 @@ from .part import Context, Inbox, Part
 CAMERA = "camera/rgb/image_raw"
 IMAGE_PERIOD = 0.25  # [s, wall] between two images
 TRAIL_LINE = Shape(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
-CROWDED = 0.6  # [m] between two frames; the names of nearer ones are below each other beside one of them
 
 
 class ViewPart(Part):
@@ -28,7 +25,6 @@ class ViewPart(Part):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         gui, state = context.server.gui, context.state.now
-        self._frames = gui.add_checkbox("Frames", False)
         self._with_trail = gui.add_checkbox("Trail", state.live or state.recorded)
         self._image = gui.add_image(np.zeros((3, 4, 3), np.uint8), label="camera", visible=False)
         self._message: Optional[Image] = None  # that is not shown yet
@@ -39,7 +35,7 @@ class ViewPart(Part):
         self._trail = Trail()
         self._message = None
         self._image.visible = False
-        inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry)
+        inbox.subscribe(absolute(robot, "odom"), Odometry, self._on_odometry, None)  # all, or a jump is no jump
         inbox.subscribe(absolute(robot, CAMERA), Image, self._on_image)
 
     def _on_odometry(self, _: float, message: Odometry) -> None:
@@ -53,7 +49,6 @@ class ViewPart(Part):
 
     def show(self, state: PageState) -> None:
         self._show_trail()
-        self._show_frames()
         self._show_image()
 
     def _show_trail(self) -> None:
@@ -63,10 +58,6 @@ class ViewPart(Part):
             group["trail"] = (replace(TRAIL_LINE, points=points), pose)
         self.context.scene.show("trail", group)
 
-    def _show_frames(self) -> None:
-        located = {name: self.context.locate(name) for name in self.context.frames.names() if self._frames.value}
-        self.context.scene.show("frames", frames({name: pose for name, pose in located.items() if pose is not None}))
-
     def _show_image(self) -> None:
         now = time.monotonic()
         if self._message is not None and now - self._image_at >= IMAGE_PERIOD:
@@ -75,15 +66,6 @@ class ViewPart(Part):
             if image is not None:
                 self._image.image = image
             self._image.visible = image is not None
-
-
-def frames(poses: Mapping[str, Pose3D]) -> Group:
-    """The axes of frames; if frames are near each other, all their names are beside the first of them."""
-    first: Dict[str, List[str]] = {}
-    for name, pose in poses.items():
-        near = (other for other in first if math.dist(pose.position, poses[other].position) < CROWDED)
-        first.setdefault(next(near, name), []).append(name)
-    return {name: (Shape(FRAME, text="\n".join(first.get(name, ()))), pose) for name, pose in poses.items()}
 
 
 def camera_image(message: Image) -> Optional[np.ndarray]:

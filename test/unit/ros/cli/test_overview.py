@@ -8,6 +8,7 @@ import pytest
 from aro_robocop_goto_as.names import COMMAND_VARIABLE, SERVER
 from aro_robocop_goto_as.probes import x_display
 from aro_robocop_goto_as.ros.cli.overview import overview
+from aro_robocop_goto_as.web import access
 
 
 def shown(*nodes, arguments=""):
@@ -20,20 +21,21 @@ def shown(*nodes, arguments=""):
 @pytest.mark.parametrize(
     "arguments, address",
     [
-        ("web_host:= web_port:=", "http://localhost:8080"),
-        ("web_host:=0.0.0.0 web_port:=8090", "http://localhost:8090"),
+        ("web_host:= web_port:=", "http://localhost:8080 (from a phone with web_host:=0.0.0.0)"),
+        ("web_host:=0.0.0.0 web_port:=8090", "http://192.0.2.7:8090"),
     ],
 )
-def test_the_address_of_the_web_page_is_shown_if_it_is_started(arguments, address):
+def test_the_address_of_the_web_page_is_shown_if_it_is_started(monkeypatch, arguments, address):
+    monkeypatch.setattr(access, "own_address", lambda: "192.0.2.7")
     assert shown("robocop_web", arguments=arguments)["view"] == f"in a browser: {address}"
     assert "view" not in shown("robocop_sim")
 
 
 def test_a_recording_says_where_it_is_shown_and_that_it_waits_for_a_browser(monkeypatch):
     monkeypatch.setattr(x_display, "answers", lambda: True)
-    arguments = "web_host:= web_port:=8090 replay:='/a.bag'"
-    assert shown("replay", arguments=arguments)["view"].startswith("in a browser: http://localhost:8090; it plays when")
-    assert shown("replay", "rviz", arguments=arguments)["view"] == "in a browser: http://localhost:8090"
+    arguments = "web_host:=192.0.2.1 web_port:=8090 replay:='/a.bag'"
+    assert shown("replay", arguments=arguments)["view"].startswith("in a browser: http://192.0.2.1:8090; it plays when")
+    assert shown("replay", "rviz", arguments=arguments)["view"] == "in a browser: http://192.0.2.1:8090"
 
 
 def test_goals_are_offered_only_with_a_server():

@@ -1,4 +1,4 @@
-"""What a click on the floor requests, and what is remembered of goals."""
+"""What a click on the floor requests, and what is shown of the newest goal."""
 
 import re
 from unittest.mock import MagicMock
@@ -6,12 +6,13 @@ from unittest.mock import MagicMock
 import pytest
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
+from frames_of_tests import transform
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, lifted
 from aro_robocop_goto_as.ros import markers
 from aro_robocop_goto_as.ros.web import goals
+from aro_robocop_goto_as.ros.web.frames import Frames
 from aro_robocop_goto_as.ros.web.part import Context
-from aro_robocop_goto_as.web.frames import FrameTree
 from aro_robocop_goto_as.web.scene import BOX, Shape
 from aro_robocop_goto_as.web.state import PageState, SharedState
 
@@ -23,7 +24,7 @@ CLICK = MagicMock(ray_origin=(1.0, 2.0, 3.0), ray_direction=(0.0, 0.0, -1.0))
 
 def made(**state):
     shared = SharedState(PageState(robots=("blue", "red"), chosen="red", pose=lifted(Pose2D(0.0, 0.0, 3.0)), **state))
-    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree(), "map")
+    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), Frames(), "map")
     part, inbox = goals.GoalsPart(context), MagicMock()
     inbox.subscribe.return_value.impl.connections = [MagicMock(callerid_pub="/server")]
     part.subscribe_to_robot(inbox, "red")
@@ -80,7 +81,7 @@ def shown(part, context):
     """Whether the server is there, whether it executes a goal, and whether feedback is shown."""
     part.show(context.state.now)
     state = context.state.now
-    return state.answering, state.executing, "0.00 rad" in part._feedback_html.content
+    return state.answering, state.executing, "0.00 rad" in part._goal_html.content
 
 
 def test_a_goal_is_executed_until_its_server_reports_its_end_or_is_gone_however_long_both_take():
@@ -98,14 +99,18 @@ def test_a_goal_is_executed_until_its_server_reports_its_end_or_is_gone_however_
     assert shown(part, context) == (False, None, False)
 
 
-def test_feedback_ends_with_the_result_also_where_no_status_is_reported_as_in_a_recording():
+def test_the_result_takes_the_place_of_the_feedback_also_where_no_status_is_reported_as_in_a_recording():
     part, context = made(recorded=True)
     part._on_feedback(0.0, GoToPositionActionFeedback())
     assert shown(part, context) == (False, None, True)
-    part._on_result("blue", 0.0, GoToPositionActionResult())
-    assert shown(part, context) == (False, None, True)
-    part._on_result("red", 0.0, GoToPositionActionResult())
+    result = GoToPositionActionResult()
+    result.status.status, result.result.message = GoalStatus.SUCCEEDED, "REACHED: so"
+    part._on_result(0.0, result)
     assert shown(part, context) == (False, None, False)
+    assert all(words in part._goal_html.content for words in ("SUCCEEDED", "REACHED: so"))
+    part._on_goal(0.0, GoToPositionActionGoal())
+    part.show(context.state.now)
+    assert "REACHED" not in part._goal_html.content
 
 
 def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names():
@@ -116,7 +121,7 @@ def test_a_goal_is_shown_in_the_fixed_frame_with_the_state_that_actionlib_names(
     part._on_goal(0.0, goal)
     part._on_status(0.0, GoalStatusArray(status_list=[status]))
     assert part._show_goal("red") == "ACTIVE (1.00, 0.00) in odom"
-    context.frames.update("map", "red/odom", lifted(Pose2D(-0.7, 0.2, 0.0)))
+    context.frames.update(transform("map", "red/odom", -0.7, 0.2))
     assert part._show_goal("red") == "ACTIVE (0.30, 0.20)"
 
 
@@ -127,7 +132,7 @@ def test_a_goal_that_has_ended_is_no_longer_shown_when_robots_are_placed_anew():
         context.state.change(resets=resets)
         part._on_status(0.0, ended)  # as its server does for some seconds
         part.show(context.state.now)
-        assert ("SUCCEEDED" in part._feedback_html.content) == is_shown
+        assert ("SUCCEEDED" in part._goal_html.content) == is_shown
 
 
 def test_the_rows_above_the_buttons_are_the_same_with_and_without_a_goal():
@@ -135,20 +140,27 @@ def test_the_rows_above_the_buttons_are_the_same_with_and_without_a_goal():
 
     def rows():
         part.show(context.state.now)
-        return re.findall(r"nowrap\">(\w+)<", part._feedback_html.content)
+        return re.findall(r"nowrap\">(\w+)<", part._goal_html.content)
 
     idle = rows()
     part._on_feedback(0.0, GoToPositionActionFeedback())
     part._on_status(0.0, GoalStatusArray(status_list=[GoalStatus(status=GoalStatus.ACTIVE)]))
-    assert rows() == idle == ["goal", "errors", "feedback"]
+    assert rows() == idle == ["goal", "errors"]
 
 
-def test_a_goal_that_waits_for_its_server_is_shown_and_can_be_cancelled():
-    part, context = made(waiting="x 0.30 y 0.00 in map")
+def test_a_goal_that_the_bridge_keeps_for_a_server_that_is_down_can_be_cancelled():
+    part, context = made()
     part._status.impl.connections = []
     part.show(context.state.now)
-    assert "waits for its server: x 0.30 y 0.00 in map" in part._feedback_html.content
     assert part._cancel.disabled is False
+
+
+@pytest.mark.parametrize("sent, shows", [("one", True), ("", True), ("another", False)])
+def test_the_position_shown_is_that_of_the_goal_which_the_server_reports_and_may_have_named(sent, shows):
+    part, _ = made()
+    part._on_goal(0.0, GoToPositionActionGoal(goal_id=GoalID(id=sent)))
+    part._on_status(0.0, GoalStatusArray(status_list=[GoalStatus(GoalID(id="one"), GoalStatus.ACTIVE, "")]))
+    assert ("(0.00, 0.00)" in part._show_goal("red")) == shows
 
 
 def drawn(part, context):
@@ -168,7 +180,7 @@ def drawn(part, context):
 )
 def test_the_goal_of_a_server_without_markers_is_drawn_and_stays_when_its_status_is_no_longer_reported(status, color):
     part, context = made(root="red/odom")
-    context.frames.update("red/odom", "red/base_footprint", lifted(Pose2D(0.0, 0.0, 0.0)))
+    context.frames.update(transform("red/odom", "red/base_footprint"))
     context.scene.draws.return_value = False
     goal = GoToPositionActionGoal()
     goal.goal_id.id, goal.goal.position.x = "goal", 1.0
@@ -179,36 +191,3 @@ def test_the_goal_of_a_server_without_markers_is_drawn_and_stays_when_its_status
     assert drawn(part, context) == {"goal_circle": (rgb, (1.0, 0.0, 0.0)), "goal_pin": (rgb, (1.0, 0.0, 0.2))}
     context.scene.draws.return_value = True  # the server's markers
     assert drawn(part, context) == {}
-
-
-def test_the_history_holds_the_last_goals_with_their_positions():
-    history = goals.GoalHistory()
-    for number in range(3 * goals.REMEMBERED):
-        history.sent(f"goal {number}", float(number), 0.0)
-    last = 3 * goals.REMEMBERED - 1
-    history.ended("", f"goal {last}", "SUCCEEDED", "REACHED")
-    history.ended("", "goal 0", "ABORTED", "OBSTACLE")
-    newest, older = history.latest
-    assert older.goal == (float(last), 0.0) and newest.goal is None
-    for _ in range(3 * goals.REMEMBERED):
-        history.ended("", "x", "ABORTED", "")
-    assert len(history.latest) == goals.REMEMBERED
-
-
-def test_a_goal_that_was_not_seen_has_the_position_that_its_server_names():
-    history = goals.GoalHistory()
-    history.ended("", "x", "ABORTED", "OBSTACLE: so; 1.00 m from the goal x 2.00 y -1.50 in odom")
-    assert history.latest[0].goal == (2.0, -1.5)
-
-
-def test_a_goal_without_an_id_is_recognised_by_the_one_that_its_server_gives_it():
-    history = goals.GoalHistory()
-    history.sent("named", 1.0, 0.0)
-    history.sent("", 2.0, 0.0)
-    assert history.position("named") == (1.0, 0.0)
-    history.named("first")
-    assert history.position("first") == (2.0, 0.0)
-    history.sent("", 3.0, 0.0)
-    history.ended("", "first", "PREEMPTED", "")
-    history.ended("", "second", "SUCCEEDED", "")
-    assert [ended.goal for ended in history.latest] == [(3.0, 0.0), (2.0, 0.0)]

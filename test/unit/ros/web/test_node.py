@@ -18,17 +18,17 @@ def test_the_environment_chooses_the_address_unless_it_is_given(monkeypatch):
 
 
 def test_values_are_taken_as_they_are_written():
-    given = load_params(["web_host:=0.0.0.0", "web_port:=8090", "web_frame:=odom"])
-    assert given == WebParams(web_host="0.0.0.0", web_port=8090, web_frame="odom")
+    given = load_params(["web_port:=8090", "web_frame:=odom", "view_only:=True", "replay:=1", "web_linear_velocity:=1"])
+    assert given == WebParams(web_port=8090, web_frame="odom", view_only=True, replay="1", web_linear_velocity=1.0)
 
 
 @pytest.mark.parametrize(
     "argument, reason",
     [
         ("web_prot:=1", "did you mean 'web_port'"),
-        ("web_port:=80.5", "web_port: expected an integer, got 80.5"),
+        ("web_port:=80.5", "web_port: expected an integer, got '80.5'"),
         ("web_port:=70000", "web_port: expected at most 65535"),
-        ("web_port:=[", "web_port: "),
+        ("view_only:=maybe", "view_only: expected true or false, got 'maybe'"),
         ("web_frame:=/map", "web_frame: expected a frame name"),
         ("8090", "expected NAME:=VALUE, got '8090'"),
     ],

@@ -5,25 +5,27 @@ from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
+import rospy
+from frames_of_tests import transform
 from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose3D
 from aro_robocop_goto_as.ros import markers
+from aro_robocop_goto_as.ros.web.frames import Frames
 from aro_robocop_goto_as.ros.web.part import Context
 from aro_robocop_goto_as.ros.web.scenery import (
     FREE,
-    LABEL_HEIGHT,
     MAX_MAP_CELLS,
     OCCUPIED,
+    PATIENCE,
     UNKNOWN,
     SceneryPart,
     map_image,
-    part_labels,
     scan_points,
 )
-from aro_robocop_goto_as.web.frames import FrameTree
-from aro_robocop_goto_as.web.scene import BOX, TEXT, PageScene, Shape
+from aro_robocop_goto_as.web.scene import PageScene
 from aro_robocop_goto_as.web.state import PageState, SharedState
 
 
@@ -47,7 +49,7 @@ def test_a_map_that_is_too_large_is_thinned_out():
 def test_the_cameras_turn_to_a_world_once():
     cameras, inbox = MagicMock(), MagicMock()
     state = SharedState(PageState(root="map"))
-    scenery = SceneryPart(Context(MagicMock(), PageScene(MagicMock()), state, MagicMock(), FrameTree(), "map"), cameras)
+    scenery = SceneryPart(Context(MagicMock(), PageScene(MagicMock()), state, MagicMock(), Frames(), "map"), cameras)
     scenery.subscribe(inbox)
     scenery.subscribe_to_robot(inbox, "")
     receive = inbox.subscribe.call_args_list[0][0][2]
@@ -62,14 +64,29 @@ def test_the_cameras_turn_to_a_world_once():
     assert len([*cameras.show.call_args[0][0]]) == 1, "without the robots, whose frames may be known before or after"
 
 
-def test_texts_that_would_cover_each_other_are_raised_above_one_another():
-    places = {"first": (0.0, 0.0, 0.6), "beside": (0.5, 0.1, 0.6), "behind": (0.0, 2.0, 0.6), "state": (0.0, 0.0, 0.9)}
-    group = {name: (Shape(TEXT, text=name), Pose3D(position)) for name, position in places.items()}
-    group["wall"] = (Shape(BOX), Pose3D((0.0, 0.0, 0.6)))
-    server = {"state": group.pop("state")}
-    part_labels(group, server)
-    places = {name: pose.position for name, (_, pose) in (*group.items(), *server.items())}
-    assert places.pop("wall") == (0.0, 0.0, 0.6)
-    assert places["first"] == (0.0, 0.0, 0.6) and places["behind"] == (0.0, 2.0, 0.6)
-    ups = sorted(y + z for _, y, z in places.values())
-    assert min(above - below for below, above in zip(ups, ups[1:])) >= LABEL_HEIGHT - 1e-9
+def test_a_scan_is_drawn_where_its_robot_was_at_its_stamp_as_soon_as_that_is_known():
+    context = Context(MagicMock(), MagicMock(), SharedState(PageState(root="odom")), MagicMock(), Frames(), "odom")
+    scenery = SceneryPart(context, MagicMock())
+
+    def shown():
+        scenery.show(context.state.now)
+        calls = [call[0][1] for call in context.scene.show.call_args_list if call[0][0] == "scan"]
+        return [(group["scan"][0].points[0], group["scan"][1]) for group in calls]
+
+    scan = LaserScan(angle_increment=1.0, range_max=5.0, ranges=[1.0])
+    scan.header.frame_id, scan.header.stamp = "base", rospy.Time(10.5)
+    context.frames.update(transform("odom", "base", 1.0, stamp=10.0))
+    scenery._on_scan(0.0, scan)
+    assert shown() == []
+    later = LaserScan(header=Header(frame_id="base", stamp=rospy.Time(10.6)))
+    scenery._on_scan(0.0, later)  # which does not take its place
+    context.frames.update(transform("odom", "base", 2.0, stamp=11.0))
+    assert shown() == [((2.5, 0.0, 0.0), Pose3D())]
+
+
+def test_a_scan_whose_transform_never_comes_is_replaced():
+    scenery = SceneryPart(MagicMock(), MagicMock())
+    for stamp in (10.0, 10.0 + 2.0 * PATIENCE, 1.0):  # the last one of a simulator that was started again
+        scan = LaserScan(header=Header(stamp=rospy.Time(stamp)))
+        scenery._on_scan(0.0, scan)
+        assert scenery._scan is scan

@@ -8,8 +8,8 @@ from waiting import wait_for
 
 from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.ros.web import teleop
+from aro_robocop_goto_as.ros.web.frames import Frames
 from aro_robocop_goto_as.ros.web.part import Context
-from aro_robocop_goto_as.web.frames import FrameTree
 from aro_robocop_goto_as.web.state import PageState, SharedState
 
 LEFT = Twist2D(0.0, 1.0)
@@ -30,7 +30,7 @@ class Publishers:
 def driven(monkeypatch, publishers, **state):
     monkeypatch.setattr(teleop.rospy, "Publisher", publishers)
     shared = SharedState(PageState(robots=("blue", "red"), chosen="red", **state))
-    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), FrameTree(), "map")
+    context = Context(MagicMock(), MagicMock(), shared, MagicMock(), Frames(), "map")
     return teleop.TeleopPart(context, 0.2, 1.0), context
 
 
