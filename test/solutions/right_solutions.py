@@ -72,7 +72,8 @@ CHANGED: Dict[str, Changes] = {
         (TURN, f"pause = 10\n                {TURN}"),
         (
             "            else:\n                self.drive(0.2",
-            "            elif pause:\n                pause -= 1\n                self.stop()\n            else:\n                self.drive(0.2",
+            "            elif pause:\n                pause -= 1\n                self.stop()\n"
+            "            else:\n                self.drive(0.2",
         ),
     ),
     # Prints exceptions that it has caught.
