@@ -783,6 +783,7 @@ ROWS: Dict[Tuple[str, Optional[Kind], str], str] = {
     ("goal_behind", Kind.LONG_TURN, "feedback_rate"): "slow_loop",
     ("stops_at_obstacle", Kind.TOO_NEAR, "feedback_rate"): "slow_loop",
     ("goal_behind", Kind.LONG_TURN, "drives_straight"): "turns_while_driving",
+    ("goal_behind", Kind.LONG_TURN, "turns_to_goal"): "turns_by_the_goals_angle",
     ("newer_goal", None, "cancel"): "preempted_three_seconds_later",
     ("goal_behind", None, "next_goal"): "done_never_cleared",
     ("feedback_position", Kind.NOT_REACHED, "feedback_rate"): "odometry_of_another_type",

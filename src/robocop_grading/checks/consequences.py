@@ -203,6 +203,7 @@ FOLLOWS = (
     Row("goal_behind", Kind.LONG_TURN, "feedback_rate", slow_loop),
     Row("stops_at_obstacle odd_scans", Kind.TOO_NEAR, "feedback_rate", slow_loop),
     Row("goal_behind", Kind.LONG_TURN, "drives_straight"),
+    Row("goal_behind", Kind.LONG_TURN, "turns_to_goal"),
     Row("newer_goal", None, "cancel", same_kind),
     Row("goal_behind newer_goal", None, "next_goal", same_kind),
     # The bridge.

@@ -56,7 +56,7 @@ def _fitting(index: int, wrong: Sequence[Pair], scenarios: Sequence[Sequence[Pai
     found: List[Tuple[float, Cause]] = []
     for cause in CAUSES:
         predict = cause.formula
-        if cause.error != index or not _fits(misses(index, wrong, predict, scale), index, MAX_UNEXPLAINED):
+        if cause.of != index or not _fits(misses(index, wrong, predict, scale), index, MAX_UNEXPLAINED):
             continue
         missed = [misses(index, pairs, predict, scale) for pairs in scenarios]
         rows = [longest(it, pairs, TOLERANCES[index]) for it, pairs in zip(missed, scenarios)]

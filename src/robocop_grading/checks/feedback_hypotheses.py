@@ -68,13 +68,13 @@ Errors = Callable[[Pair], Tuple[float, float]]
 
 
 class Cause(NamedTuple):
-    """A mistake in words, and the position_error or angle_error to which it leads.
+    """A mistake in words, and the values of position_error or angle_error, as `of` says, to which it leads.
 
     `unchanged`: the errors are those of a pose that does not change.
     """
 
     sentence: str
-    error: int  # POSITION or ANGLE
+    of: int  # POSITION or ANGLE
     formula: Formula
     unchanged: bool = False
 
