@@ -19,6 +19,7 @@ from aro_robocop_goto_as.process.child import kill_tree
 from robocop_hosting import tree
 from robocop_hosting.errors import HostingError
 
+from ..agent.processes import children_of, descendants_of
 from .limits import MAX_DISK, MAX_MEMORY, MAX_PROCESSES
 
 MIN_FILE = 4096  # bytes that every file or folder counts at least
@@ -94,19 +95,23 @@ def kernel_kills() -> int:
 
 
 def _processes(pid: int) -> List["psutil.Process"]:
-    """A process and its descendants; none if it has ended."""
-    try:
-        top = psutil.Process(pid)
-        return [top, *top.children(recursive=True)]
-    except psutil.NoSuchProcess:
-        return []
+    """A process and its descendants that have not ended."""
+    return _found([pid, *descendants_of(pid)])
+
+
+def _found(pids: Sequence[int]) -> List["psutil.Process"]:
+    found = []
+    for pid in pids:
+        with contextlib.suppress(psutil.NoSuchProcess):
+            found.append(psutil.Process(pid))
+    return found
 
 
 def _end_left_behind(processes: Sequence["psutil.Process"]) -> None:
     """End what has lost its parents: bubblewrap's init has adopted it, whose first child is the command."""
     with contextlib.suppress(psutil.Error):  # one of them has ended
         for init in [it for it in processes[1:2] if it.name() == processes[0].name() == BUBBLEWRAP]:
-            for orphan in sorted(init.children(), key=lambda it: (it.create_time(), it.pid))[1:]:
+            for orphan in sorted(_found(children_of(init.pid)), key=lambda it: (it.create_time(), it.pid))[1:]:
                 kill_tree(orphan.pid)
 
 
