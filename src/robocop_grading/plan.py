@@ -20,7 +20,7 @@ MAX_OFFSET = 20.0  # [m] largest coordinate within a scenario
 AGAIN = "_again"  # ends the name of a scenario's repetition with a new node
 START = "start"  # the recording of the node's start; every server has one
 BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "pending")  # fixed, not in the plan's file
-TICK = 0.1  # [s] of a session
+TICK = 0.1  # [s] of a run
 MIDDLE = 0  # the seed with which every range stands for its middle
 
 

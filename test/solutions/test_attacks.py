@@ -82,7 +82,7 @@ def test_sandbox_started_by_an_unprivileged_user_has_no_other_writable_places():
         "sandbox = Sandbox(())\n"
         "command = ['sh', '-c', 'for place in / /etc /dev /usr; do touch $place/here && echo SUCCESS $place; done; "
         "touch /tmp/here && echo fine']\n"
-        "sys.exit(subprocess.call(sandbox.session_command(sandbox.command_inside(command, {}, (), Path('/tmp/home')))))"
+        "sys.exit(subprocess.call(sandbox.command_inside(command, {}, (), Path('/tmp/home'))))"
     )
     nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
     with tempfile.TemporaryDirectory() as folder:  # the checkout may be in a home that nobody else reads

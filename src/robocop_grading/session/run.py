@@ -1,5 +1,6 @@
 """One node's run through the scenarios of its part: the ticks, and a record of everything that the node sends."""
 
+import time
 from collections import defaultdict
 from typing import Any, Callable, DefaultDict, Dict, List, Sequence, Set
 
@@ -12,12 +13,13 @@ from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D
 from aro_robocop_goto_as.ros import convert
 
 from .. import record as rec
+from ..errors import UngradableError
 from ..handout import ACTION
 from ..plan import TICK, Block
 from ..record import Record
 from ..sites import ORIGIN
-from .job import Job, send_to_grader
-from .node import Node, Spent
+from .job import Job
+from .node import Node
 from .services import Services
 from .stage import Stage
 from .topics import NodeTopic
@@ -27,18 +29,21 @@ MAX_LINES = 20_000  # in one record; as many at one tick, as a traceback comes a
 
 
 class Run:
-    """A job in progress: the current scenario's record so far, the known goals, and the goals that have ended."""
+    """A job in progress: its records, the current one so far, the known goals, and the goals that have ended."""
 
     def __init__(self, job: Job, stage: Stage) -> None:
         self.job, self.plan, self.stage, self.topics = job, job.plan, stage, stage.topics
         self.services = Services(stage.sim)
+        self.records: Dict[str, Record] = {}  # of the scenarios that are over
+        self.scenario = ""  # the present one
+        self._until = time.monotonic() + job.budget
         self.ended: Set[str] = set()
         self.known: Dict[str, int] = {}  # goal -> status
         self.entries: DefaultDict[str, List[Any]] = defaultdict(list)  # by field of the record
         self._before: DefaultDict[str, int] = defaultdict(int)  # how many of them there were before this tick
         self.marks: Dict[str, float] = {}
         self.death_recorded = False
-        self._spent = Spent()
+        self._used = 0.0  # processor time [s] of the nodes that have ended
         self._started = Pose2D()  # odom_from_footprint when the node was started
         self.topics.subscribe("/cmd_vel", Twist, self._on_command)
         self.topics.subscribe("/rosout", Log, self._on_log)
@@ -48,8 +53,9 @@ class Run:
         raise NotImplementedError
 
     def announce(self, name: str) -> None:
-        """Tell the grader which scenario is the next one."""
-        send_to_grader(f"begin {name}")
+        """Say which scenario is the next one."""
+        self.scenario = name
+        self.job.on_scenario(name)
 
     def begin(self, name: str, site: Pose2D = ORIGIN, blocks: Sequence[Block] = (), odd_scan: bool = False) -> None:
         """Start a scenario's record and bag, with the robot at rest at its site."""
@@ -61,11 +67,11 @@ class Run:
         self.stage.begin(site, blocks, odd_scan)
 
     def finish(self, name: str, **more: Any) -> Record:
-        """Write the scenario's record, and return it."""
+        """Keep the scenario's record, and return it."""
         self.stage.bag.close()
         fields: Dict[str, Any] = {field: tuple(entries) for field, entries in self.entries.items()}
         others = self.topics.other_types() if self.stage.node is not None else ()
-        record = Record(
+        record = self.records[name] = Record(
             name,
             self.job.part,
             started=self._started,
@@ -76,7 +82,6 @@ class Run:
             **fields,
             **more,
         )
-        rec.write(record, self.job.out / f"{self.job.part}-{name}.record")
         return record
 
     def add(self, field: str, entry: Any) -> None:
@@ -110,17 +115,28 @@ class Run:
         stage = self.stage
         self._started = stage.odom_from_footprint()
         now_ns, clock_ns = stage.sim.stamp_ns, stage.clock_ns
-        stage.node = Node(self.job, self.topics, self.services, self._on_line, now_ns, clock_ns, self._spent)
+        stage.node = Node(
+            self.job, self.topics, self.services, self._on_line, self._expect_time, now_ns, clock_ns, self._used
+        )
+
+    def _expect_time(self) -> None:
+        if time.monotonic() > self._until:
+            raise UngradableError(f"{self.job.part}: not done within {self.job.budget:g} s, stopped at {self.scenario}")
 
     def is_dead(self) -> bool:
         """Return whether there is no node, or it has ended."""
         return self.stage.node is None or self.stage.node.is_over()
 
-    def close(self) -> None:
-        """End the node."""
+    def end_node(self) -> None:
+        """End the node, if there is one."""
         if self.stage.node is not None:
             self.stage.node.end()
-            self._spent, self.stage.node = self.stage.node.spent(), None
+            self._used, self.stage.node = self.stage.node.used, None
+
+    def close(self) -> None:
+        """End the node and the simulation."""
+        self.end_node()
+        self.stage.sim.close()
 
     def _record_death(self) -> None:
         node = self.stage.node

@@ -39,7 +39,7 @@ class ServerRun(Run):
         self.limits = job.plan.limits
         self.topics.advertise(GOAL, GoToPositionActionGoal)
         self.topics.advertise(CANCEL, GoalID)
-        self._used = False  # the node has served a scenario
+        self._has_served = False  # the node, a scenario
         self._pushes: List[Push] = []  # that are still to come
         self._pushed_until = 0.0  # [s]
 
@@ -65,7 +65,7 @@ class ServerRun(Run):
         return self.finish(START, up=up, **names)
 
     def _bring_up(self) -> bool:
-        self.known, self._used = {}, False
+        self.known, self._has_served = {}, False
         self.launch()
         self.wait_for(lambda: self.topics.node_publishes("/rosout"), START_TIMEOUT)
         up = self.wait_for(self._connected, SERVER_TIMEOUT)
@@ -85,7 +85,7 @@ class ServerRun(Run):
         The scenario is repeated with a new node if a goal ended otherwise than it should or did not end, and the node
         had served other scenarios. attempts.py decides which of the two records counts, when all records are there.
         """
-        used = self._used and not self.is_dead()
+        used = self._has_served and not self.is_dead()
         record = self._play(scenario, scenario.name)
         unended = bool(record.problem) and not record.deaths
         if used and (unended or self._unexpected(record)):
@@ -98,10 +98,10 @@ class ServerRun(Run):
         self.ended.clear()
         self._pushes = list(scenario.pushes)
         if self.is_dead():
-            self.close()
+            self.end_node()
             if not self._bring_up():
                 problem = "the node did not come up again"
-        self._used = True
+        self._has_served = True
         if not problem:
             self.settle(WARM_UP)
             for step in scenario.steps:
@@ -113,7 +113,7 @@ class ServerRun(Run):
         outlines = tuple(block.outline for block in scenario.obstacles)
         record = self.finish(name, obstacles=outlines, problem=problem)
         if problem or self._unclean(record):
-            self.close()
+            self.end_node()
         return record
 
     def _unclean(self, record: Record) -> bool:
