@@ -133,8 +133,8 @@ OUT_OF_TIME = (-signal.SIGXCPU, 128 + signal.SIGXCPU)
 
 
 @dataclass(frozen=True)
-class Death:
-    """The end of the node's process; with a reason if it was killed for exceeding a resource limit."""
+class NodeEnd:
+    """The end of the node's process; with a reason if the grader has ended it."""
 
     time: float
     status: int
@@ -171,7 +171,7 @@ class Record:
     commands: Tuple[Command, ...] = ()
     clicks: Tuple[Click, ...] = ()
     lines: Tuple[Line, ...] = ()
-    deaths: Tuple[Death, ...] = ()
+    node_ends: Tuple[NodeEnd, ...] = ()
     marks: Dict[str, float] = field(default_factory=dict)  # moments of the scenario [s]; flags are 0 or 1
 
     def results_of(self, goal: SentGoal) -> List[Result]:

@@ -106,8 +106,8 @@ class Runner:
             raise UngradableError(str(error)) from error
         finally:
             run.close()
-        deaths = [death for record in run.records.values() for death in record.deaths]
-        if kernel_kills() > kills and any(death.is_unexplained for death in deaths):
+        ends = [end for record in run.records.values() for end in record.node_ends]
+        if kernel_kills() > kills and any(end.is_unexplained for end in ends):
             raise UngradableError(f"{job.part}: the machine ran out of memory")
         records, counted, told = counting(self.plan, run.records)
         for name in counted:

@@ -48,7 +48,7 @@ def test_attack_fails_and_the_submission_is_still_graded(name, tmp_path, monkeyp
 def test_lie_about_time_reaches_the_grader_and_ends_the_node_with_a_reason_or_has_no_effect(name, tmp_path):
     code, reason = attacks.LIES[name]
     run, lines = attacked(f"{attacks.LIE}{code}\n", tmp_path / "mine")
-    reasons = [run.problem, *(death.reason for record in run.records.values() for death in record.deaths)]
+    reasons = [run.problem, *(end.reason for record in run.records.values() for end in record.node_ends)]
     assert "LIED" in lines
     assert any(reason in it for it in reasons) if reason else not any(reasons), reasons
 

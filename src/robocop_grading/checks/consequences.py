@@ -35,12 +35,12 @@ def starting(record: Record, _failure: Failed, _earlier: Failed) -> bool:
 
 def not_killed(record: Record, _failure: Failed, _earlier: Failed) -> bool:
     """Return whether nothing other than an exception ended the node."""
-    return not any(death.reason or death.is_unexplained for death in record.deaths)
+    return not any(end.reason or end.is_unexplained for end in record.node_ends)
 
 
 def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether the node died before the goal ended."""
-    return any(death.time <= end_of(record, failure) for death in record.deaths)
+    return any(end.time <= end_of(record, failure) for end in record.node_ends)
 
 
 def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:
@@ -67,7 +67,7 @@ def nothing_published(record: Record, failure: Failed, earlier: Failed) -> bool:
 
 def died_before(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether the node died before anything came from it after it got the goal."""
-    return bool(record.deaths) and failure.goal is not None and silent(record, failure.goal)
+    return bool(record.node_ends) and failure.goal is not None and silent(record, failure.goal)
 
 
 def came_near(record: Record, failure: Failed) -> bool:

@@ -35,7 +35,7 @@ ROS_PARAMETERS = {
 class Node:
     """One node; each line of its output is passed to `on_line`, what it publishes to `topics`.
 
-    The node lives until its process ends for any reason. It is over when everything that it sent and printed is
+    The node lives until its process ends for any reason. It has ended when everything that it sent and printed is
     handled.
     """
 
@@ -66,24 +66,24 @@ class Node:
         offered = [*topics.begin(), *services.headers()]
         self._channel.send(wire.SETUP, pickle.dumps(({**ROS_PARAMETERS, **job.parameters}, offered)))
         self.next_ns = now_ns  # when the node will do something without having received a message
-        self._is_over = False
-        self._given_up = ""  # why the grader has ended it, if it has
+        self._has_ended = False
+        self._ended_because = ""  # if the grader has ended it
         self._guard = Guard(self._process.pid, processor_time=job.cpu_time, used=used)
         assert self._process.stdout is not None
         self._output = Output(self._process.stdout, on_line)
 
-    def is_over(self) -> bool:
+    def has_ended(self) -> bool:
         """Return whether the node has ended; if so, everything that it has sent is handled first."""
-        if not self._is_over and self._has_ended():
+        if not self._has_ended and self._has_exited():
             self._finish()
-        return self._is_over
+        return self._has_ended
 
-    def death(self, now: float) -> rec.Death:
-        """How the node ended, once it is over; `now` is the simulated time [s]."""
-        status, reason = self._process.wait(), self._guard.reason or self._given_up
+    def how_ended(self, now: float) -> rec.NodeEnd:
+        """How the node ended, once it has; `now` is the simulated time [s]."""
+        status, reason = self._process.wait(), self._guard.reason or self._ended_because
         if not reason and status in rec.OUT_OF_TIME:
             reason = "it used more processor time than a node may"
-        return rec.Death(now, status, reason)
+        return rec.NodeEnd(now, status, reason)
 
     @property
     def used(self) -> float:
@@ -105,7 +105,7 @@ class Node:
         called once, while the node works. GraderLostError if the node's answer is one that no agent gives.
         """
         new, messages = self._topics.take()
-        if self._is_over:
+        if self._has_ended:
             meanwhile()
             return
         for header in new:
@@ -124,7 +124,7 @@ class Node:
             has_more = self._has_more()
             if self._is_done(until_ns):
                 break
-            if not has_more and self._has_ended():
+            if not has_more and self._has_exited():
                 self._finish()
                 break
             idle += not has_more
@@ -132,7 +132,7 @@ class Node:
                 used, idle = self._guard.used, 0
             if idle * POLL > MAX_IDLE:  # not by a clock: on a busy machine it may be the grader that does not run
                 did = "stopped answering" if self._channel.is_open else "closed its connection to"
-                self._given_up = f"it {did} the grader, which has ended it"
+                self._ended_because = f"it {did} the grader, which has ended it"
                 self.end()
                 self._finish()
                 break
@@ -175,13 +175,13 @@ class Node:
             self._channel.write()
         return self._channel in ready and self._channel.read()
 
-    def _has_ended(self) -> bool:
+    def _has_exited(self) -> bool:
         self._output.read()  # the node may be blocked on a full pipe
         return self._process.poll() is not None
 
     def _finish(self) -> None:
         """Note that the node has ended, and handle everything that it sent before its end."""
-        self._is_over, self.next_ns = True, NEVER
+        self._has_ended, self.next_ns = True, NEVER
         for _ in range(MAX_LAST_READS):
             for kind, body in self._channel.frames():
                 if kind != wire.DONE:  # of an answer that came as the node was ended

@@ -42,7 +42,7 @@ class Run:
         self.entries: DefaultDict[str, List[Any]] = defaultdict(list)  # by field of the record
         self._before: DefaultDict[str, int] = defaultdict(int)  # how many of them there were before this tick
         self.marks: Dict[str, float] = {}
-        self.death_recorded = False
+        self.end_recorded = False
         self._used = 0.0  # processor time [s] of the nodes that have ended
         self._started = Pose2D()  # odom_from_footprint when the node was started
         self.topics.subscribe("/cmd_vel", Twist, self._on_command)
@@ -111,7 +111,7 @@ class Run:
 
     def launch(self) -> None:
         """Start the node that is graded."""
-        self.death_recorded = False
+        self.end_recorded = False
         stage = self.stage
         self._started = stage.odom_from_footprint()
         now_ns, clock_ns = stage.sim.stamp_ns, stage.clock_ns
@@ -123,9 +123,9 @@ class Run:
         if time.monotonic() > self._until:
             raise UngradableError(f"{self.job.part}: not done within {self.job.budget:g} s, stopped at {self.scenario}")
 
-    def is_dead(self) -> bool:
+    def node_has_ended(self) -> bool:
         """Return whether there is no node, or it has ended."""
-        return self.stage.node is None or self.stage.node.is_over()
+        return self.stage.node is None or self.stage.node.has_ended()
 
     def end_node(self) -> None:
         """End the node, if there is one."""
@@ -138,11 +138,11 @@ class Run:
         self.end_node()
         self.stage.sim.close()
 
-    def _record_death(self) -> None:
+    def _record_end(self) -> None:
         node = self.stage.node
-        if node is not None and node.is_over() and not self.death_recorded:
-            self.death_recorded = True
-            self.add("deaths", node.death(self.stage.now))
+        if node is not None and node.has_ended() and not self.end_recorded:
+            self.end_recorded = True
+            self.add("node_ends", node.how_ended(self.stage.now))
 
     # -- time --
 
@@ -151,7 +151,7 @@ class Run:
         for field, entries in self.entries.items():
             self._before[field] = len(entries)
         self.add("samples", self.stage.tick())
-        self._record_death()
+        self._record_end()
 
     def settle(self, seconds: float) -> None:
         """Let time pass."""
@@ -159,9 +159,9 @@ class Run:
             self.tick()
 
     def wait_for(self, condition: Callable[[], bool], timeout: float) -> bool:
-        """Let time pass until a condition holds, the node is dead or `timeout` [s] is over; return whether it holds."""
+        """Let time pass until a condition holds, the node has ended or `timeout` [s] is over; return if it holds."""
         for _ in range(round(timeout / TICK)):
-            if condition() or self.is_dead():
+            if condition() or self.node_has_ended():
                 break
             self.tick()
         return condition()

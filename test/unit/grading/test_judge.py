@@ -117,7 +117,7 @@ def test_pose_that_never_changes_is_explained_by_the_topic_that_nobody_publishes
 
 
 def test_node_that_ends_while_starting_has_made_one_mistake_and_the_other_part_has_its_own() -> None:
-    dead = Record("start", "server", up=False, lines=NO_NAME, deaths=(rec.Death(0.2, 1),))
+    dead = Record("start", "server", up=False, lines=NO_NAME, node_ends=(rec.NodeEnd(0.2, 1),))
     bridge = replace(dead, name="no_server", part="bridge")
     grade = judge("anna", PLAN, {"server": {"start": dead}, "bridge": {"no_server": bridge}}, {})
     assert sorted(mistake.check.name for mistake in grade.mistakes) == ["action_server", "waits_for_server"]
@@ -162,7 +162,7 @@ def test_interrupted_scenario_fails_its_checks_with_the_reason_and_the_other_par
 
 
 def test_reason_why_the_server_ended_is_told_where_no_check_examines_that() -> None:
-    start = replace(START, up=False, deaths=(rec.Death(0.1, 1),), lines=NO_NAME)
+    start = replace(START, up=False, node_ends=(rec.NodeEnd(0.1, 1),), lines=NO_NAME)
     reason = "server: The node ended while starting: NameError: name 'x' is not defined."
     assert judge("x", PLAN.restricted(["reaches_goal"]), {"server": {"start": start}}, {}).problems == (reason,)
     assert graded(start).problems == ()

@@ -9,7 +9,7 @@ from processes import processes_mentioning
 from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
 from robocop_grading import runner as module
 from robocop_grading.errors import GraderLostError, UngradableError
-from robocop_grading.record import Death, Record
+from robocop_grading.record import NodeEnd, Record
 from robocop_grading.runner import Runner
 from robocop_grading.sandbox import guard
 from robocop_grading.submission import Script, Submission
@@ -67,25 +67,25 @@ def test_run_is_cut_short_by_a_node_that_gives_answers_that_can_not_be_true(scen
 
 
 @pytest.mark.parametrize(
-    "death, more, is_graded",
+    "end, more, is_graded",
     [
-        (Death(1.0, 137), 1, False),  # as bubblewrap reports it
-        (Death(1.0, -signal.SIGKILL), 1, False),
-        (Death(1.0, 137), 0, True),
-        (Death(1.0, -signal.SIGKILL, MEMORY), 1, True),
-        (Death(1.0, 1), 1, True),
-        (Death(1.0, 128 + signal.SIGXCPU), 1, True),  # from its own limit
+        (NodeEnd(1.0, 137), 1, False),  # as bubblewrap reports it
+        (NodeEnd(1.0, -signal.SIGKILL), 1, False),
+        (NodeEnd(1.0, 137), 0, True),
+        (NodeEnd(1.0, -signal.SIGKILL, MEMORY), 1, True),
+        (NodeEnd(1.0, 1), 1, True),
+        (NodeEnd(1.0, 128 + signal.SIGXCPU), 1, True),  # from its own limit
     ],
 )
 def test_node_that_the_kernel_may_have_killed_for_memory_gets_no_grade(
-    death, more, is_graded, scenarios, tmp_path, monkeypatch
+    end, more, is_graded, scenarios, tmp_path, monkeypatch
 ):
     counter = tmp_path / "vmstat"
     counter.write_text("pgfault 5\noom_kill 3\nswap_ra 7\n")
     monkeypatch.setattr(guard, "COUNTERS", counter)
-    scenarios(lambda: counter.write_text(f"oom_kill {3 + more}"), Record("far", "server", deaths=(death,)))
+    scenarios(lambda: counter.write_text(f"oom_kill {3 + more}"), Record("far", "server", node_ends=(end,)))
     if is_graded:
-        assert recorded(tmp_path).records["far"].deaths == (death,)
+        assert recorded(tmp_path).records["far"].node_ends == (end,)
     else:
         with pytest.raises(UngradableError, match="^server: the machine ran out of memory$"):
             recorded(tmp_path)

@@ -185,7 +185,7 @@ NORM = (
 def test_reason_of_an_end_is_an_exception_with_its_place_in_the_node_or_a_line_that_is_no_information(
     lines: List[str], reason: str
 ) -> None:
-    verdict = CHECKS["stays_alive"](logged(*lines, deaths=(rec.Death(4.0, int(len(lines) > 1)),)), LIMITS)
+    verdict = CHECKS["stays_alive"](logged(*lines, node_ends=(rec.NodeEnd(4.0, int(len(lines) > 1)),)), LIMITS)
     assert isinstance(verdict, Failed) and verdict.cause == f"The node died: {reason}"
 
 
@@ -281,7 +281,7 @@ def test_exception_that_the_node_has_caught_and_printed_fails_no_check_unless_th
     caught = logged(line, KEY_ERROR[1])
     assert CHECKS["no_exception"](caught, LIMITS) is PASSED
     assert CHECKS["stops_at_obstacle"](_aborted(lines=caught.lines), LIMITS) is PASSED
-    assert isinstance(CHECKS["no_exception"](replace(caught, deaths=(rec.Death(3.1, 1),)), LIMITS), Failed)
+    assert isinstance(CHECKS["no_exception"](replace(caught, node_ends=(rec.NodeEnd(3.1, 1),)), LIMITS), Failed)
 
 
 @pytest.mark.parametrize("end, is_at_once", [(0.1, True), (9.0, False)])

@@ -54,7 +54,7 @@ class Watched(Node):
         """One turn; the reason why it is over, if it is."""
         self.now += TURN
         self.run_until(self.now, self.now, lambda: None)
-        return self.death(self.now / 1e9).reason if self.is_over() else None
+        return self.how_ended(self.now / 1e9).reason if self.has_ended() else None
 
 
 @pytest.fixture
@@ -80,7 +80,7 @@ def test_a_node_lives_until_the_time_that_it_is_told(started):
 def test_what_a_node_says_before_it_ends_by_itself_counts(started):
     last = r"os.write(channel, wire.frame(wire.MESSAGE, wire.named('/said', b'\x06\0\0\0\2\0\0\0ab')))"
     node = started(f"{last}; print('bye'); sys.exit(3)")
-    assert node.turn() == "" and node.death(1.0).status == 3
+    assert node.turn() == "" and node.how_ended(1.0).status == 3
     assert (node.said, node.lines) == (["ab"], ["bye"])
     calls = []
     node.run_until(2 * TURN, 0, lambda: calls.append("as ever"))
