@@ -39,8 +39,10 @@ def test_attack_fails_and_the_submission_is_still_graded(name, tmp_path, monkeyp
     neighbour = tmp_path / "neighbour"
     neighbour.mkdir()
     (neighbour / "solution.py").write_text("secret")
-    run, _ = attacked(getattr(attacks, name), tmp_path / "mine")
+    run, lines = attacked(getattr(attacks, name), tmp_path / "mine")
     assert run.problem == ""
+    refused = [line for line in lines if line.startswith("refused")]
+    assert len(refused) == {"FULL_DISK": 5, "READ": 4}.get(name, 0), refused
     assert "already_there" in run.records or not run.records["start"].up, "neither judged nor recorded as not started"
 
 
