@@ -6,7 +6,7 @@ From a hand-in to its grade:
       | files/        unpacked; what was handed in
       | submission    the scripts to grade, built in a sandbox (sandbox/)
       v
-    runner            starts a session for each part, in the sandbox's network
+    runner            runs the scenarios of each part
       |
     session/          simulates: stage (robot, time), topics (sent and received), server or bridge (scenarios)
       |       ^

@@ -1,4 +1,4 @@
-"""If the session has repeated a scenario with a new node: which of the two attempts counts."""
+"""If a scenario has been repeated with a new node: which of the two attempts counts."""
 
 from dataclasses import replace
 from typing import Dict, List, Mapping, Tuple

@@ -16,7 +16,7 @@ class GradingSetupError(GradingError):
 
 
 class UngradableError(GradingError):
-    """The grader can't start a run, has no time for it, or it was ended from outside twice; the run can be repeated."""
+    """The machine has no time, no memory or nothing else for a run; the run can be repeated."""
 
 
 class GraderLostError(GradingError):

@@ -7,17 +7,15 @@ from pathlib import Path
 from typing import Dict, List, Mapping
 
 from aro_robocop_goto_as.suggestions import did_you_mean
-from robocop_hosting.tree import remove, temporary_folder
+from robocop_hosting.tree import temporary_folder
 
 from . import judge
-from .errors import UngradableError
 from .grades import Grade, completed
 from .record import Record
 from .report import write as report
-from .runner import Recorded, Runner
-from .submission import Script, Submission
+from .runner import Runner
+from .submission import Submission
 
-KILLED = " by a SIGKILL that did not come from the grader"
 NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that they need"
 MISSING = "Python's module {} is not installed here{}"
 BESIDE = "{0}.py lies beside {1}, but only {1} was given: grade the folder"
@@ -28,14 +26,12 @@ LAB_MODULES = (
 ).split()
 MISTYPED = 0.75  # similarity to a module of the lab; scipy and rospy have 0.6
 _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
-EXCUSE = " (is the machine short of memory?)"
 
 
 def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = False, all_plots: bool = False) -> Grade:
     """Write the report to `folder`, with plots and bags of the scenarios in which a check failed, or of all.
 
-    `moves`: it goes to whoever handed in. A part that is killed is run again.
-    UngradableError if the part is killed again and may not be to blame, or if the machine has no time for it.
+    `moves`: it goes to whoever handed in. UngradableError if the machine has no time or no memory for it.
     """
     plan = runner.plan
     records: Dict[str, Mapping[str, Record]] = {}
@@ -43,7 +39,7 @@ def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = Fa
     with temporary_folder("robocop-grade-") as work:
         notes = [] if plan.is_whole else [NOT_WHOLE]
         for script in (script for script in submission.scripts if plan.examines(script.part)):
-            recorded = _run(runner, submission, script, Path(work, script.part), notes)
+            recorded = runner.run(submission, script, Path(work, script.part))
             records[script.part], problems[script.part] = recorded.records, recorded.problem
             said = *recorded.told, *_missing_modules(recorded.records, script.path)
             notes += [f"{script.part}: {it}" for it in said]
@@ -67,15 +63,3 @@ def _missing_modules(records: Mapping[str, Record], script: Path) -> List[str]:
         else MISSING.format(it, did_you_mean(it, LAB_MODULES, similarity=MISTYPED) or NAME_IT)
         for it in names
     ]
-
-
-def _run(runner: Runner, submission: Submission, script: Script, out: Path, notes: List[str]) -> Recorded:
-    recorded = runner.run(submission, script, out)
-    if recorded.killed:
-        excuse = EXCUSE if recorded.excused else ""
-        notes.append(f"{script.part}: {recorded.killed}{KILLED}{excuse}; this part was run again")
-        remove(out)
-        recorded = runner.run(submission, script, out)
-        if recorded.killed and recorded.excused:
-            raise UngradableError(f"not gradable: {recorded.killed}{KILLED}{EXCUSE}, as in the previous attempt")
-    return recorded

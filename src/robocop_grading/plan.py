@@ -17,7 +17,7 @@ PARTS = ("server", "bridge")
 AGAIN = "_again"  # ends the name of a scenario's repetition with a new node
 START = "start"  # the recording of the node's start; every server has one
 BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "pending")  # fixed, not in the plan's file
-TICK = 0.1  # [s] of a session
+TICK = 0.1  # [s] of a run
 
 
 def total(points: Iterable[float]) -> float:

@@ -4,15 +4,12 @@ x, y and yaw are true poses in odom, whose origin is where the scenario starts; 
 """
 
 import math
-import pickle
 import signal
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Dict, List, Tuple, Type, TypeVar, Union
+from typing import Dict, List, Tuple, Union
 
 from aro_robocop_goto_as.geometry import Pose2D, wrap_angle
 
-T = TypeVar("T")
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED, LOST = range(10)
 STATUS_NAMES = tuple(
     "PENDING ACTIVE PREEMPTED SUCCEEDED ABORTED REJECTED PREEMPTING RECALLING RECALLED LOST".split()
@@ -136,8 +133,8 @@ OUT_OF_TIME = (-signal.SIGXCPU, 128 + signal.SIGXCPU)
 
 
 @dataclass(frozen=True)
-class Death:
-    """The end of the node's process; with a reason if it was killed for exceeding a resource limit."""
+class NodeEnd:
+    """The end of the node's process; with a reason if the grader has ended it."""
 
     time: float
     status: int
@@ -174,7 +171,7 @@ class Record:
     commands: Tuple[Command, ...] = ()
     clicks: Tuple[Click, ...] = ()
     lines: Tuple[Line, ...] = ()
-    deaths: Tuple[Death, ...] = ()
+    node_ends: Tuple[NodeEnd, ...] = ()
     marks: Dict[str, float] = field(default_factory=dict)  # moments of the scenario [s]; flags are 0 or 1
 
     def results_of(self, goal: SentGoal) -> List[Result]:
@@ -199,20 +196,6 @@ class Record:
 def status_name(status: int) -> str:
     """The name of a status, also of an undefined one."""
     return STATUS_NAMES[status] if 0 <= status < len(STATUS_NAMES) else f"status {status}"
-
-
-def write(value: object, path: Path) -> None:
-    """Write a record or a job to a file that only processes of the grader can write to."""
-    new = path.with_suffix(".new")  # renamed, so that a reader never sees half a file
-    new.write_bytes(pickle.dumps(value))
-    new.replace(path)
-
-
-def read(kind: Type[T], path: Path) -> T:
-    """Read a value of this class that `write` wrote."""
-    value = pickle.loads(path.read_bytes())
-    assert isinstance(value, kind)
-    return value
 
 
 def wrapped(angle: float) -> float:

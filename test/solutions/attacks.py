@@ -26,7 +26,7 @@ for place in (os.path.expanduser('~'), '/tmp', '/dev/shm', '/var/tmp', '/'):
 READ = """
 import glob, os
 for path in ('/root/.bashrc', '/etc/shadow', PLAN, *glob.glob(os.path.dirname(FOLDER) + '/*/solution.py'),
-             FOLDER + '/out/server-start.record', FOLDER + '/out/server.job'):
+             FOLDER + '/out/server-start.bag'):
     try:
         if path != FOLDER + '/solution.py':
             print('SUCCESS', path, len(open(path).read()), flush=True)

@@ -39,8 +39,10 @@ def test_attack_fails_and_the_submission_is_still_graded(name, tmp_path, monkeyp
     neighbour = tmp_path / "neighbour"
     neighbour.mkdir()
     (neighbour / "solution.py").write_text("secret")
-    run, _ = attacked(getattr(attacks, name), tmp_path / "mine")
+    run, lines = attacked(getattr(attacks, name), tmp_path / "mine")
     assert run.problem == ""
+    refused = [line for line in lines if line.startswith("refused")]
+    assert len(refused) == {"FULL_DISK": 5, "READ": 4}.get(name, 0), refused
     assert "already_there" in run.records or not run.records["start"].up, "neither judged nor recorded as not started"
 
 
@@ -48,7 +50,7 @@ def test_attack_fails_and_the_submission_is_still_graded(name, tmp_path, monkeyp
 def test_lie_about_time_reaches_the_grader_and_ends_the_node_with_a_reason_or_has_no_effect(name, tmp_path):
     code, reason = attacks.LIES[name]
     run, lines = attacked(f"{attacks.LIE}{code}\n", tmp_path / "mine")
-    reasons = [run.problem, *(death.reason for record in run.records.values() for death in record.deaths)]
+    reasons = [run.problem, *(end.reason for record in run.records.values() for end in record.node_ends)]
     assert "LIED" in lines
     assert any(reason in it for it in reasons) if reason else not any(reasons), reasons
 
@@ -82,7 +84,7 @@ def test_sandbox_started_by_an_unprivileged_user_has_no_other_writable_places():
         "sandbox = Sandbox(())\n"
         "command = ['sh', '-c', 'for place in / /etc /dev /usr; do touch $place/here && echo SUCCESS $place; done; "
         "touch /tmp/here && echo fine']\n"
-        "sys.exit(subprocess.call(sandbox.session_command(sandbox.command_inside(command, {}, (), Path('/tmp/home')))))"
+        "sys.exit(subprocess.call(sandbox.command_inside(command, {}, (), Path('/tmp/home'))))"
     )
     nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
     with tempfile.TemporaryDirectory() as folder:  # the checkout may be in a home that nobody else reads

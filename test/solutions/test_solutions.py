@@ -173,7 +173,7 @@ def test_grading_interrupted_twice_leaves_no_folders_or_processes_behind(tmp_pat
         )
     deadline = time.monotonic() + 240.0  # [s, wall] on a busy machine
     # The first scenario is over, the second has begun. Not by glob: folders come and go meanwhile.
-    while not any("server-start.record" in files for _, _, files in os.walk(scratch)):
+    while not any("server-start.bag" in files for _, _, files in os.walk(scratch)):
         assert grading.poll() is None and time.monotonic() < deadline, (tmp_path / "output").read_text()
         time.sleep(0.01)
     with busy_processes():

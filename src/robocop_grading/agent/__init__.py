@@ -4,7 +4,7 @@
 
     scheduler    which thread runs, what the others wait for, and simulated time
     locks, clock, files, threads    Python's ways to wait, each of which tells the scheduler
-    stuck        threads that wait in a way that none of these sees; child processes
+    stuck        threads that wait in a way that none of these sees; child processes (processes)
     ros          rospy's time
     memory_socket, ros_graph, connections    rospy's topics and services, and the ROS master, without the network
     noetic       names that the lab's Python 3.8 and NumPy still have

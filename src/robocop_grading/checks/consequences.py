@@ -36,12 +36,12 @@ def starting(record: Record, _failure: Failed, _earlier: Failed) -> bool:
 
 def not_killed(record: Record, _failure: Failed, _earlier: Failed) -> bool:
     """Return whether nothing other than an exception ended the node."""
-    return not any(death.reason or death.is_unexplained for death in record.deaths)
+    return not any(end.reason or end.is_unexplained for end in record.node_ends)
 
 
 def died(record: Record, failure: Failed, _earlier: Failed) -> bool:
     """Return whether the node died before the goal ended."""
-    return any(death.time <= end_of(record, failure) for death in record.deaths)
+    return any(end.time <= end_of(record, failure) for end in record.node_ends)
 
 
 def raised(record: Record, failure: Failed, _earlier: Failed) -> bool:

@@ -6,7 +6,7 @@ from typing import Sequence
 from aro_robocop_goto_as.names import ACTION_TYPE
 
 from ..handout import ACTION, Limits
-from ..record import Death, Record
+from ..record import NodeEnd, Record
 from .output import DELAY, TRACEBACK, TRACEBACK_LOGGED, UNCAUGHT, first_error, last_error
 from .topic_use import other_action
 from .verdict import PASSED, Failed, NotReached, Verdict, check
@@ -24,8 +24,8 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     """The node provides an action server robocop_goto_as of the handout's type."""
     if record.name != "start":
         return NotReached("this is checked when the node starts")
-    if record.deaths and not record.up:
-        return _died("The node ended while starting", record.deaths[0], record)
+    if record.node_ends and not record.up:
+        return _died("The node ended while starting", record.node_ends[0], record)
     name, servers = ACTION[1:], [server.lstrip("/") for server in record.servers]
     if servers and name not in servers:
         found = " and ".join(servers)
@@ -47,15 +47,15 @@ def action_server(record: Record, limits: Limits) -> Verdict:
     return Failed(name, "no action server", 0.0, cause)
 
 
-def _died(cause: str, death: Death, record: Record) -> Failed:
-    reason = death.reason or ("signal 9 (SIGKILL)" if death.is_unexplained else last_error(record))
-    return Failed("a running node", f"exit status {death.status}", death.time, f"{cause}: {reason}")
+def _died(cause: str, end: NodeEnd, record: Record) -> Failed:
+    reason = end.reason or ("signal 9 (SIGKILL)" if end.is_unexplained else last_error(record))
+    return Failed("a running node", f"exit status {end.status}", end.time, f"{cause}: {reason}")
 
 
 @check("states")
 def no_exception(record: Record, limits: Limits) -> Verdict:
     """No callback or thread raises an uncaught exception."""
-    fatal = [it.time for it in record.deaths if it.status == RAISED and not it.reason]
+    fatal = [it.time for it in record.node_ends if it.status == RAISED and not it.reason]
     for number, line in enumerate(record.lines):
         is_fatal = any(abs(time - line.time) <= DELAY for time in fatal) and TRACEBACK_LOGGED.search(line.text)
         if is_fatal or UNCAUGHT.search(line.text):
@@ -67,9 +67,9 @@ def no_exception(record: Record, limits: Limits) -> Verdict:
 @check("states")
 def stays_alive(record: Record, limits: Limits) -> Verdict:
     """The node keeps running to the end."""
-    for death in record.deaths:
-        own = death.status == 0 and not death.reason
-        return _died("The node ended by itself" if own else "The node died", death, record)
+    for end in record.node_ends:
+        own = end.status == 0 and not end.reason
+        return _died("The node ended by itself" if own else "The node died", end, record)
     if record.problem.startswith("the node did not come up"):
         return Failed("a running node", "it did not come up again", 0.0, record.problem)
     return PASSED

@@ -19,7 +19,12 @@ from ..texts import shortened
 MAX_SHOWN = 500  # characters of an error
 # Python before 3.11.5 may hang for ever in sys._current_frames(), which dask's profiler calls a hundred times a second,
 # if a garbage collection, to which dask has added a callback, comes in the middle of it (CPython issue 106883).
-WITHOUT_PROFILER = {"distributed.worker.profile.enabled": False}
+SETTINGS = {
+    "distributed.worker.profile.enabled": False,
+    # A worker that has died is started again, however long that takes; only the hand-in that it ran is held against.
+    "distributed.deploy.lost-worker-timeout": "1h",
+    "distributed.scheduler.worker-saturation": 1.0,  # no hand-in waits at a worker
+}
 
 
 def send_child_errors_to(log: Path) -> None:
@@ -45,7 +50,7 @@ def connected(scheduler: str, workers: int) -> Iterator[Client]:
     logging.getLogger("asyncio").setLevel(logging.CRITICAL)
     warnings.filterwarnings("ignore", message="resource_tracker")
     with contextlib.ExitStack() as stack:
-        stack.enter_context(dask.config.set(WITHOUT_PROFILER))
+        stack.enter_context(dask.config.set(SETTINGS))
         try:
             cluster = scheduler or stack.enter_context(_local_cluster(workers))
             client = stack.enter_context(Client(cluster))

@@ -238,7 +238,7 @@ def grade(gradebook: Gradebook, scheduler: str, workers: int, task: Callable[[Pa
             with connected(scheduler, min(workers, len(paths))) as client:
                 for path, problem in done(client, task, paths):
                     reraise_if_interrupted()
-                    orphans.reap_adopted("bwrap")  # two of each hand-in
+                    orphans.reap_adopted("bwrap")  # one of each node
                     print(gradebook.add(path.name, problem), flush=True)
     except KeyboardInterrupt:
         gradebook.add_stored()

@@ -1,8 +1,7 @@
 """bubblewrap around a submission: a network of its own, a read-only system, a home directory in memory.
 
-The session runs in its own network namespace, loopback only. The node runs in a second network namespace, with its
-own processes and files, as a user who owns nothing: the node sees neither the grader's processes, records and points
-nor other submissions.
+The node runs in its own network namespace, loopback only, with its own processes and files, as a user who owns nothing:
+it sees neither the grader's processes, bags and points nor other submissions.
 A build runs the submission's code, so it is done in the sandbox too. limits.py has the limits.
 """
 
@@ -40,14 +39,9 @@ CONTAINER_OPTIONS = " ".join(f"--security-opt {it}=unconfined" for it in ("secco
 
 @dataclass(frozen=True)
 class Sandbox:
-    """Builds the command lines that start a session, a node or a build in the sandbox."""
+    """Builds the command lines that start a node or a build in the sandbox."""
 
     reads: Tuple[Path, ...]  # besides the system: what every submission needs, such as the virtual environment
-
-    def session_command(self, command: Sequence[str]) -> List[str]:
-        """Command line of a session, in its own network and PID namespace; all else is shared."""
-        namespaces = ["--die-with-parent", "--unshare-net", "--unshare-pid"]
-        return ["bwrap", *namespaces, "--dev-bind", "/", "/", "--proc", "/proc", "--", *command]
 
     def command_inside(
         self,
@@ -174,7 +168,7 @@ def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
         raise GradingSetupError(f"python3-seccomp is not installed; {advice}")
     shown = [AGENT, *(path for path in reads if path.exists())]
     find = ["/usr/bin/find", *map(str, shown), *UNREADABLE]
-    trial = Sandbox(()).session_command(Sandbox(()).command_inside(find, {}, shown, Path("/tmp/home")))
+    trial = Sandbox(()).command_inside(find, {}, shown, Path("/tmp/home"))
     try:
         done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL_TIME)
     except subprocess.TimeoutExpired as error:

@@ -1,17 +1,15 @@
-"""Watches a process tree: kills the tree when it exceeds a limit, and notes for how long none of its threads runs.
+"""Watches a process tree: kills the tree when it exceeds a limit.
 
 The kernel's limits are per process; these limits are for all processes together. The kernel's memory for sockets,
 pipes and entries of folders belongs to no process, so it is not counted.
 """
 
 import contextlib
-import glob
 import math
 import os
 import threading
-import time
 from pathlib import Path
-from typing import Callable, List, Optional, Sequence, Set
+from typing import Callable, List, Optional, Sequence
 
 import psutil
 
@@ -19,13 +17,13 @@ from aro_robocop_goto_as.process.child import kill_tree
 from robocop_hosting import tree
 from robocop_hosting.errors import HostingError
 
+from ..agent.processes import children_of, descendants_of
 from .limits import MAX_DISK, MAX_MEMORY, MAX_PROCESSES
 
 MIN_FILE = 4096  # bytes that every file or folder counts at least
 PERIOD = 0.1  # [s, wall]
 COUNTERS = Path("/proc/vmstat")
 BUBBLEWRAP = "bwrap"  # the name of its processes: the one that is started, and init inside
-RUNS, BLOCKED = "R", "D"  # states of a thread that is runnable, and of one that waits for a disk; see proc(5)
 
 
 class Guard:
@@ -46,9 +44,6 @@ class Guard:
         of the command's output. `used`: processor time [s] of earlier processes, which counts, too.
         """
         self.reason = ""  # why they were killed, if they were
-        # [s, wall] in which no thread was runnable; load of the machine does not make this time longer
-        self.still = 0.0
-        self.idle = 0.0  # [s, wall] in which no thread was runnable or waited for a disk
         self.used = used
         self._processor_time, self._most = processor_time, processes
         self._pid, self._folder, self._memory = pid, folder, memory
@@ -62,15 +57,10 @@ class Guard:
         self._thread.join()
 
     def _watch(self) -> None:
-        looked, earlier = time.monotonic(), self.used
+        earlier = self.used
         while not self._stopped.wait(PERIOD):
             processes = _processes(self._pid)
-            since, looked = looked, time.monotonic()
-            before, self.used = self.used, max(self.used, earlier + _sum(processes, _processor_time))
-            rest = looked - since - (self.used - before)
-            states = set().union(*map(_states, processes)) if rest > 0.0 else {RUNS}
-            self.still += rest if RUNS not in states else 0.0
-            self.idle += rest if states.isdisjoint({RUNS, BLOCKED}) else 0.0
+            self.used = max(self.used, earlier + _sum(processes, _processor_time))
             if all(_sum(processes, memory) > self._memory for memory in (_resident, _proportional)):
                 self.reason = f"its processes together took more than {self._memory / 1024**2:g} MB of memory"
             elif len(processes) > self._most:
@@ -94,19 +84,23 @@ def kernel_kills() -> int:
 
 
 def _processes(pid: int) -> List["psutil.Process"]:
-    """A process and its descendants; none if it has ended."""
-    try:
-        top = psutil.Process(pid)
-        return [top, *top.children(recursive=True)]
-    except psutil.NoSuchProcess:
-        return []
+    """A process and its descendants that have not ended."""
+    return _found([pid, *descendants_of(pid)])
+
+
+def _found(pids: Sequence[int]) -> List["psutil.Process"]:
+    found = []
+    for pid in pids:
+        with contextlib.suppress(psutil.NoSuchProcess):
+            found.append(psutil.Process(pid))
+    return found
 
 
 def _end_left_behind(processes: Sequence["psutil.Process"]) -> None:
     """End what has lost its parents: bubblewrap's init has adopted it, whose first child is the command."""
     with contextlib.suppress(psutil.Error):  # one of them has ended
         for init in [it for it in processes[1:2] if it.name() == processes[0].name() == BUBBLEWRAP]:
-            for orphan in sorted(init.children(), key=lambda it: (it.create_time(), it.pid))[1:]:
+            for orphan in sorted(_found(children_of(init.pid)), key=lambda it: (it.create_time(), it.pid))[1:]:
                 kill_tree(orphan.pid)
 
 
@@ -135,16 +129,6 @@ def _proportional(process: "psutil.Process") -> float:
         return float(process.memory_full_info().pss)
     except psutil.AccessDenied:
         return _resident(process)
-
-
-def _states(process: "psutil.Process") -> Set[str]:
-    """What its threads do now, as letters."""
-    states = set()
-    for file in glob.iglob(f"/proc/{process.pid}/task/*/stat"):
-        with contextlib.suppress(OSError):  # the thread has ended
-            # Bytes: the thread's name, in parentheses, is any of its own choice.
-            states.add(Path(file).read_bytes().rpartition(b")")[2].split()[0].decode())
-    return states
 
 
 def _too_large(folder: Path) -> str:

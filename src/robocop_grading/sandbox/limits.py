@@ -13,12 +13,11 @@ CPU_GRACE = 5  # [s] from SIGXCPU, which distinguishes the limit from an externa
 MAX_TASKS = 200  # processes and threads of a user; a rospy node has some 30
 MAX_PROCESSES = 64  # at the same time; a fork bomb would take the processor from everybody until its time is used up
 MAX_MEMORY = 2048 * MB  # bytes; a node with numpy and OpenCV takes some 200 MB
-MAX_SESSION_MEMORY = MAX_MEMORY + 1024 * MB  # bytes, with the session, which takes some 150 MB
 MAX_SPACE = 64 * MB  # bytes of each writable place, all in memory
 
 # -- what the grader waits for --
-MAX_IDLE = 20.0  # [s, wall] in which a node may do nothing during one answer
-MAX_STILL = 900.0  # [s, wall] likewise for all answers of a part, with waits for a disk; a few seconds are usual
+MAX_IDLE = 60.0  # [s, wall] in which a node has to do something while the grader waits for its answer:
+MIN_WORK = 0.5  # [s] of processor time; with sixty busy processes on a processor it gets twice as much
 
 # -- a build --
 MAX_SOURCE = 64 * MB  # bytes of a package

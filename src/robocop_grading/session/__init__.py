@@ -2,7 +2,6 @@
 
 From a job to its records; each module uses the modules below it:
 
-    main               one part of a hand-in
     server_run, bridge_run   the scenarios of each part
     run                the base of both: ticks, and the record of everything that comes from the node
     stage              robot, simulated time, and their messages (step_messages, scenario_bag)

@@ -1,12 +1,11 @@
 """The hand-in's node as a child process: at each GO it lives until the simulated time that the grader names."""
 
-import itertools
 import pickle
 import select
 import socket
 import struct
 from subprocess import PIPE, STDOUT
-from typing import Any, Callable, List, NamedTuple
+from typing import Any, Callable, List
 
 from aro_robocop_goto_as.process import child
 
@@ -14,7 +13,7 @@ from .. import record as rec
 from ..agent import wire
 from ..errors import GraderLostError
 from ..sandbox.guard import Guard
-from ..sandbox.limits import MAX_IDLE, MAX_STILL
+from ..sandbox.limits import MAX_IDLE, MIN_WORK
 from ..submission import CHANNEL
 from .channel import UNREADABLE, Channel
 from .job import Job
@@ -33,18 +32,10 @@ ROS_PARAMETERS = {
 }
 
 
-class Spent(NamedTuple):
-    """What the nodes of a part have taken so far."""
-
-    processor_time: float = 0.0  # [s]
-    still: float = 0.0  # [s, wall] in which no thread was runnable, while the grader waited for an answer
-    has_stopped_answering: bool = False  # one of these nodes
-
-
 class Node:
     """One node; each line of its output is passed to `on_line`, what it publishes to `topics`.
 
-    The node lives until its process ends for any reason. It is over when everything that it sent and printed is
+    The node lives until its process ends for any reason. It has ended when everything that it sent and printed is
     handled.
     """
 
@@ -54,11 +45,12 @@ class Node:
         topics: Topics,
         services: Services,
         on_line: Callable[[str], object],
+        on_wait: Callable[[], object],
         now_ns: int,
         clock_ns: int,
-        spent: Spent,
+        used: float,
     ) -> None:
-        """`spent`: what the part's earlier nodes have used."""
+        """`on_wait` is called again and again during a turn; `used`: processor time [s] of the part's earlier nodes."""
         mine, theirs = socket.socketpair()
         self._process = child.start(
             [f"{theirs.fileno()},{clock_ns}" if word == CHANNEL else word for word in job.command],
@@ -69,34 +61,34 @@ class Node:
             pass_fds=[theirs.fileno()],
         )
         theirs.close()
-        self._topics, self._services, self._started_ns = topics, services, now_ns
+        self._topics, self._services, self._on_wait, self._started_ns = topics, services, on_wait, now_ns
         self._channel = Channel(mine)
         offered = [*topics.begin(), *services.headers()]
         self._channel.send(wire.SETUP, pickle.dumps(({**ROS_PARAMETERS, **job.parameters}, offered)))
         self.next_ns = now_ns  # when the node will do something without having received a message
-        self._is_over = False
-        self._given_up = ""  # why the grader has ended it, if it has
-        self._guard = Guard(self._process.pid, processor_time=job.cpu_time, used=spent.processor_time)
-        self._still, self._has_stopped_answering = spent.still, spent.has_stopped_answering
+        self._has_ended = False
+        self._ended_because = ""  # if the grader has ended it
+        self._guard = Guard(self._process.pid, processor_time=job.cpu_time, used=used)
         assert self._process.stdout is not None
         self._output = Output(self._process.stdout, on_line)
 
-    def is_over(self) -> bool:
+    def has_ended(self) -> bool:
         """Return whether the node has ended; if so, everything that it has sent is handled first."""
-        if not self._is_over and self._has_ended():
+        if not self._has_ended and self._has_exited():
             self._finish()
-        return self._is_over
+        return self._has_ended
 
-    def death(self, now: float) -> rec.Death:
-        """How the node ended, once it is over; `now` is the simulated time [s]."""
-        status, reason = self._process.wait(), self._guard.reason or self._given_up
+    def how_ended(self, now: float) -> rec.NodeEnd:
+        """How the node ended, once it has; `now` is the simulated time [s]."""
+        status, reason = self._process.wait(), self._guard.reason or self._ended_because
         if not reason and status in rec.OUT_OF_TIME:
             reason = "it used more processor time than a node may"
-        return rec.Death(now, status, reason)
+        return rec.NodeEnd(now, status, reason)
 
-    def spent(self) -> Spent:
-        """What this node and the part's earlier nodes have used."""
-        return Spent(self._guard.used, self._still, self._has_stopped_answering or bool(self._given_up))
+    @property
+    def used(self) -> float:
+        """Processor time [s] of this node and the part's earlier nodes."""
+        return self._guard.used
 
     def end(self) -> None:
         """SIGKILL the node and its children. With SIGTERM, shutdown messages would be recorded as errors."""
@@ -110,11 +102,10 @@ class Node:
         """Let the node live until a simulated time [ns], and handle everything that it does until then.
 
         `clock_ns`: the time on /clock, which the node's loops see when all messages are handled. `meanwhile` is
-        called once, while the node works. GraderLostError if the node's answer is one that no agent gives, or if
-        this is the part's second node that stops answering.
+        called once, while the node works. GraderLostError if the node's answer is one that no agent gives.
         """
         new, messages = self._topics.take()
-        if self._is_over:
+        if self._has_ended:
             meanwhile()
             return
         for header in new:
@@ -127,25 +118,24 @@ class Node:
 
     def _wait_for_done(self, until_ns: int) -> None:
         """Handle what the node sends, until it says DONE for this time, or has ended."""
-        idle, still, silent = self._guard.idle, self._guard.still, 0.0
-        for looks in itertools.count(1):
+        used, idle = self._guard.used, 0  # polls since it has worked
+        while True:
+            self._on_wait()
             has_more = self._has_more()
             if self._is_done(until_ns):
                 break
-            if not has_more and self._has_ended():
+            if not has_more and self._has_exited():
                 self._finish()
                 break
-            # Count no more than our own polls took: on a busy machine the delay may be the grader's.
-            silent = min(looks * POLL, self._guard.still - still)
-            if self._guard.idle - idle > MAX_IDLE or self._still + silent > MAX_STILL:
+            idle += not has_more
+            if self._guard.used > used + MIN_WORK:
+                used, idle = self._guard.used, 0
+            if idle * POLL > MAX_IDLE:  # not by a clock: on a busy machine it may be the grader that does not run
                 did = "stopped answering" if self._channel.is_open else "closed its connection to"
-                if self._has_stopped_answering:
-                    raise GraderLostError(f"the node {did} the grader again")
-                self._given_up = f"it {did} the grader, which has ended it"
+                self._ended_because = f"it {did} the grader, which has ended it"
                 self.end()
                 self._finish()
                 break
-        self._still += silent
 
     def _is_done(self, until_ns: int) -> bool:
         """Handle the frames that have come; return whether the node said DONE for this time."""
@@ -185,13 +175,13 @@ class Node:
             self._channel.write()
         return self._channel in ready and self._channel.read()
 
-    def _has_ended(self) -> bool:
+    def _has_exited(self) -> bool:
         self._output.read()  # the node may be blocked on a full pipe
         return self._process.poll() is not None
 
     def _finish(self) -> None:
         """Note that the node has ended, and handle everything that it sent before its end."""
-        self._is_over, self.next_ns = True, NEVER
+        self._has_ended, self.next_ns = True, NEVER
         for _ in range(MAX_LAST_READS):
             for kind, body in self._channel.frames():
                 if kind != wire.DONE:  # of an answer that came as the node was ended

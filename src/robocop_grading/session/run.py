@@ -1,5 +1,6 @@
 """One node's run through the scenarios of its part: the ticks, and a record of everything that the node sends."""
 
+import time
 from collections import defaultdict
 from typing import Any, Callable, DefaultDict, Dict, List, Sequence, Set
 
@@ -12,13 +13,14 @@ from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D
 from aro_robocop_goto_as.ros import convert
 
 from .. import record as rec
+from ..errors import UngradableError
 from ..handout import ACTION
 from ..plan import TICK
 from ..record import Record
 from ..scenarios import Block
 from ..sites import ORIGIN
-from .job import Job, send_to_grader
-from .node import Node, Spent
+from .job import Job
+from .node import Node
 from .services import Services
 from .stage import Stage
 from .topics import NodeTopic
@@ -29,19 +31,22 @@ SHORT = 100  # characters; a shorter line counts as one of this length
 
 
 class Run:
-    """A job in progress: the current scenario's record so far, the known goals, and the goals that have ended."""
+    """A job in progress: its records, the current one so far, the known goals, and the goals that have ended."""
 
     def __init__(self, job: Job, stage: Stage) -> None:
         self.job, self.plan, self.stage, self.topics = job, job.plan, stage, stage.topics
         self.services = Services(stage.sim)
+        self.records: Dict[str, Record] = {}  # of the scenarios that are over
+        self.scenario = ""  # the present one
+        self._until = time.monotonic() + job.budget
         self.ended: Set[str] = set()
         self.known: Dict[str, int] = {}  # goal -> status
         self.entries: DefaultDict[str, List[Any]] = defaultdict(list)  # by field of the record
         self._before: DefaultDict[str, int] = defaultdict(int)  # how many of them there were before this tick
         self.marks: Dict[str, float] = {}
-        self.death_recorded = False
+        self.end_recorded = False
         self._printed = 0  # characters of this record's lines
-        self._spent = Spent()
+        self._used = 0.0  # processor time [s] of the nodes that have ended
         self._started = Pose2D()  # odom_from_footprint when the node was started
         self.topics.subscribe("/cmd_vel", Twist, self._on_command)
         self.topics.subscribe("/rosout", Log, self._on_log)
@@ -51,8 +56,9 @@ class Run:
         raise NotImplementedError
 
     def announce(self, name: str) -> None:
-        """Tell the grader which scenario is the next one."""
-        send_to_grader(f"begin {name}")
+        """Say which scenario is the next one."""
+        self.scenario = name
+        self.job.on_scenario(name)
 
     def begin(self, name: str, site: Pose2D = ORIGIN, blocks: Sequence[Block] = (), odd_scan: bool = False) -> None:
         """Start a scenario's record and bag, with the robot at rest at its site."""
@@ -64,11 +70,11 @@ class Run:
         self.stage.begin(site, blocks, odd_scan)
 
     def finish(self, name: str, **more: Any) -> Record:
-        """Write the scenario's record, and return it."""
+        """Keep the scenario's record, and return it."""
         self.stage.bag.close()
         fields: Dict[str, Any] = {field: tuple(entries) for field, entries in self.entries.items()}
         others = self.topics.other_types() if self.stage.node is not None else ()
-        record = Record(
+        record = self.records[name] = Record(
             name,
             self.job.part,
             started=self._started,
@@ -79,7 +85,6 @@ class Run:
             **fields,
             **more,
         )
-        rec.write(record, self.job.out / f"{self.job.part}-{name}.record")
         return record
 
     def add(self, field: str, entry: Any) -> None:
@@ -109,27 +114,38 @@ class Run:
 
     def launch(self) -> None:
         """Start the node that is graded."""
-        self.death_recorded = False
+        self.end_recorded = False
         stage = self.stage
         self._started = stage.odom_from_footprint()
         now_ns, clock_ns = stage.sim.stamp_ns, stage.clock_ns
-        stage.node = Node(self.job, self.topics, self.services, self._on_line, now_ns, clock_ns, self._spent)
+        stage.node = Node(
+            self.job, self.topics, self.services, self._on_line, self._expect_time, now_ns, clock_ns, self._used
+        )
 
-    def is_dead(self) -> bool:
+    def _expect_time(self) -> None:
+        if time.monotonic() > self._until:
+            raise UngradableError(f"{self.job.part}: not done within {self.job.budget:g} s, stopped at {self.scenario}")
+
+    def node_has_ended(self) -> bool:
         """Return whether there is no node, or it has ended."""
-        return self.stage.node is None or self.stage.node.is_over()
+        return self.stage.node is None or self.stage.node.has_ended()
 
-    def close(self) -> None:
-        """End the node."""
+    def end_node(self) -> None:
+        """End the node, if there is one."""
         if self.stage.node is not None:
             self.stage.node.end()
-            self._spent, self.stage.node = self.stage.node.spent(), None
+            self._used, self.stage.node = self.stage.node.used, None
 
-    def _record_death(self) -> None:
+    def close(self) -> None:
+        """End the node and the simulation."""
+        self.end_node()
+        self.stage.sim.close()
+
+    def _record_end(self) -> None:
         node = self.stage.node
-        if node is not None and node.is_over() and not self.death_recorded:
-            self.death_recorded = True
-            self.add("deaths", node.death(self.stage.now))
+        if node is not None and node.has_ended() and not self.end_recorded:
+            self.end_recorded = True
+            self.add("node_ends", node.how_ended(self.stage.now))
 
     # -- time --
 
@@ -138,7 +154,7 @@ class Run:
         for field, entries in self.entries.items():
             self._before[field] = len(entries)
         self.add("samples", self.stage.tick())
-        self._record_death()
+        self._record_end()
 
     def settle(self, seconds: float) -> None:
         """Let time pass."""
@@ -146,9 +162,9 @@ class Run:
             self.tick()
 
     def wait_for(self, condition: Callable[[], bool], timeout: float) -> bool:
-        """Let time pass until a condition holds, the node is dead or `timeout` [s] is over; return whether it holds."""
+        """Let time pass until a condition holds, the node has ended or `timeout` [s] is over; return if it holds."""
         for _ in range(round(timeout / TICK)):
-            if condition() or self.is_dead():
+            if condition() or self.node_has_ended():
                 break
             self.tick()
         return condition()

@@ -40,7 +40,7 @@ class ServerRun(Run):
         self.limits = job.plan.limits
         self.topics.advertise(GOAL, GoToPositionActionGoal)
         self.topics.advertise(CANCEL, GoalID)
-        self._used = False  # the node has served a scenario
+        self._has_served = False  # the node, a scenario
         self._pushes: List[Push] = []  # that are still to come
         self._pushed_until = 0.0  # [s]
 
@@ -66,12 +66,12 @@ class ServerRun(Run):
         return self.finish(START, up=up, **names)
 
     def _bring_up(self) -> bool:
-        self.known, self._used = {}, False
+        self.known, self._has_served = {}, False
         self.launch()
         self.wait_for(lambda: self.topics.node_publishes("/rosout"), START_TIMEOUT)
         up = self.wait_for(self._connected, SERVER_TIMEOUT)
         self.settle(0.2)
-        return up and not self.death_recorded
+        return up and not self.end_recorded
 
     def _connected(self) -> bool:
         """Return whether the node has all five topics, with the right types."""
@@ -86,9 +86,9 @@ class ServerRun(Run):
         The scenario is repeated with a new node if a goal ended otherwise than it should or did not end, and the node
         had served other scenarios. attempts.py decides which of the two records counts, when all records are there.
         """
-        used = self._used and not self.is_dead()
+        used = self._has_served and not self.node_has_ended()
         record = self._play(scenario, scenario.name)
-        unended = bool(record.problem) and not record.deaths
+        unended = bool(record.problem) and not record.node_ends
         if used and (unended or self._unexpected(record)):
             self._play(scenario, scenario.name + AGAIN)
 
@@ -98,11 +98,11 @@ class ServerRun(Run):
         problem = ""
         self.ended.clear()
         self._pushes = list(scenario.pushes)
-        if self.is_dead():
-            self.close()
+        if self.node_has_ended():
+            self.end_node()
             if not self._bring_up():
                 problem = "the node did not come up again"
-        self._used = True
+        self._has_served = True
         if not problem:
             self.settle(WARM_UP)
             for step in scenario.steps:
@@ -115,14 +115,16 @@ class ServerRun(Run):
         unpublished = tuple(self.topics.unpublished()) if problem else ()
         record = self.finish(name, obstacles=outlines, problem=problem, unpublished=unpublished)
         if problem or self._unclean(record):
-            self.close()
+            self.end_node()
         return record
 
     def _unclean(self, record: Record) -> bool:
         """Return whether the node has to be restarted, so that its state does not affect the next scenario."""
         text = "\n".join(line.text for line in record.lines)
         ended = all(len(record.results_of(goal)) == 1 for goal in record.goals)
-        return bool(record.deaths) or not ended or self._unexpected(record) or "Traceback" in text or "[ERROR]" in text
+        return (
+            bool(record.node_ends) or not ended or self._unexpected(record) or "Traceback" in text or "[ERROR]" in text
+        )
 
     def _unexpected(self, record: Record) -> bool:
         """Return whether a goal ended in another state than planned, was aborted with nothing in front of the robot, or
@@ -207,7 +209,7 @@ class ServerRun(Run):
     def _tick(self) -> str:
         self._push()
         self.tick()
-        return "the node died" if self.is_dead() else ""
+        return "the node died" if self.node_has_ended() else ""
 
     def _push(self) -> None:
         """Push the robot where the plan says so."""

@@ -116,7 +116,7 @@ def test_pose_that_never_changes_is_explained_by_the_topic_that_nobody_publishes
 
 
 def test_node_that_ends_while_starting_has_made_one_mistake_and_the_other_part_has_its_own() -> None:
-    dead = Record("start", "server", up=False, lines=NO_NAME, deaths=(rec.Death(0.2, 1),))
+    dead = Record("start", "server", up=False, lines=NO_NAME, node_ends=(rec.NodeEnd(0.2, 1),))
     bridge = replace(dead, name="no_server", part="bridge")
     grade = judge("anna", PLAN, {"server": {"start": dead}, "bridge": {"no_server": bridge}}, {})
     assert sorted(mistake.check.name for mistake in grade.mistakes) == ["action_server", "waits_for_server"]
@@ -161,7 +161,7 @@ def test_interrupted_scenario_fails_its_checks_with_the_reason_and_the_other_par
 
 
 def test_reason_why_the_server_ended_is_told_where_no_check_examines_that() -> None:
-    start = replace(START, up=False, deaths=(rec.Death(0.1, 1),), lines=NO_NAME)
+    start = replace(START, up=False, node_ends=(rec.NodeEnd(0.1, 1),), lines=NO_NAME)
     reason = "server: The node ended while starting: NameError: name 'x' is not defined."
     assert judge("x", PLAN.restricted(["reaches_goal"]), {"server": {"start": start}}, {}).problems == (reason,)
     assert graded(start).problems == ()
@@ -209,9 +209,9 @@ def test_goal_that_a_server_never_accepted_is_one_mistake() -> None:
 
 def test_newer_goal_that_is_not_served_follows_from_the_exception_that_ended_the_node() -> None:
     newer = replace(GOAL, id="h", time=4.0)
-    dead = (rec.Death(4.1, 1),)
+    dead = (rec.NodeEnd(4.1, 1),)
     printed = tuple(replace(it, time=4.1) for it in NO_NAME)
-    record = changed(name="newer_goal", goals=(GOAL, newer), results=(), statuses=(), lines=printed, deaths=dead)
+    record = changed(name="newer_goal", goals=(GOAL, newer), results=(), statuses=(), lines=printed, node_ends=dead)
     assert failures(record) == {"newer_goal": "no_exception", "no_exception": "", "stays_alive": "no_exception"}
 
 

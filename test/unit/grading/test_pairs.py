@@ -58,7 +58,7 @@ MISTAKES: Dict[str, Callable[[Record], Record]] = {
     "angle's sign": told(lambda it: replace(it, angle_error=-it.angle_error)),
     "angle not finite": told(lambda it: replace(it, angle_error=math.nan)),
     "raises": lambda record: replace(record, lines=(*record.lines, RAISED)),
-    "dies": lambda record: replace(record, deaths=(rec.Death(9.0, 1),)),
+    "dies": lambda record: replace(record, node_ends=(rec.NodeEnd(9.0, 1),)),
 }
 
 

@@ -334,6 +334,6 @@ def test_bridge_that_takes_pending_for_the_end_is_advised() -> None:
     assert sees_none.startswith("it does not cancel an older goal that is PENDING")
     assert about_pending({**records, "pending": right}, LIMITS) == []
     failed = {"click": _reported("PENDING", ""), "replace": _replaced(preempted=""), "pending": pending}
-    died = replace(records["replace"], deaths=(rec.Death(6.0, 0),))
+    died = replace(records["replace"], node_ends=(rec.NodeEnd(6.0, 0),))
     assert about_pending({**records, "replace": died, "pending": pending}, LIMITS) == []
     assert about_pending(failed, LIMITS) == []  # it loses points for what it does with all goals

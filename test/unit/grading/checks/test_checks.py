@@ -221,7 +221,7 @@ def test_reason_of_an_end_is_an_exception_with_its_place_in_the_node_or_a_line_t
     lines: List[str], reason: str
 ) -> None:
     status = int(len(lines) > 1)
-    verdict = CHECKS["stays_alive"](logged(*lines, deaths=(rec.Death(4.0, status),)), LIMITS)
+    verdict = CHECKS["stays_alive"](logged(*lines, node_ends=(rec.NodeEnd(4.0, status),)), LIMITS)
     assert isinstance(verdict, Failed)
     assert verdict.cause == f"{'The node died' if status else 'The node ended by itself'}: {reason}"
 
@@ -324,7 +324,7 @@ def test_exception_that_the_node_has_caught_and_printed_fails_no_check_unless_th
     caught = logged(line, KEY_ERROR[1])
     assert CHECKS["no_exception"](caught, LIMITS) is PASSED
     assert CHECKS["stops_at_obstacle"](_aborted(lines=caught.lines), LIMITS) is PASSED
-    assert isinstance(CHECKS["no_exception"](replace(caught, deaths=(rec.Death(3.1, 1),)), LIMITS), Failed)
+    assert isinstance(CHECKS["no_exception"](replace(caught, node_ends=(rec.NodeEnd(3.1, 1),)), LIMITS), Failed)
 
 
 @pytest.mark.parametrize("end, is_at_once", [(0.1, True), (9.0, False)])

@@ -24,7 +24,7 @@ def printed(sandbox):
     def run(code):
         environment, home = {"HOME": "/tmp/home", "PATH": "/usr/bin:/bin"}, Path("/tmp/home")
         command = ["/usr/bin/python3", "-c", textwrap.dedent(code)]
-        inside = sandbox.session_command(sandbox.command_inside(command, environment, (), home))
+        inside = sandbox.command_inside(command, environment, (), home)
         done = subprocess.run(inside, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=TIMEOUT)
         return done.stdout.splitlines()
 
