@@ -1,6 +1,5 @@
 """Packed messages, filled by batch.c, have byte for byte the form in which ROS sends ordinary messages."""
 
-import math
 import struct
 from dataclasses import replace
 from io import BytesIO
