@@ -81,7 +81,7 @@ compiled.find = lambda name: os.path.join(folder, compiled.file_name(name))
 sys.exit(pytest.main(["-n", "0", "-p", "no:cacheprovider", "--capture=sys", *arguments]))
 """
 TESTS = (
-    *("physics/test_kinematic.py", "raycast/test_compiled_beams.py", "raycast/test_movers.py", "sensors/test_lidar.py"),
+    *("physics/test_kinematic.py", "raycast/test_compiled_beams.py", "sensors/test_lidar.py"),
     *("sensors/test_odometry.py", "ros/publishing/test_batch.py", "ros/sim/test_sensor_messages.py"),
 )
 
