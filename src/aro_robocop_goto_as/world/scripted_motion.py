@@ -48,7 +48,7 @@ class Motion:
 
 
 def moving(circles: np.ndarray, motions: Sequence[Optional[Motion]]) -> Callable[[float], float]:
-    """A function that puts circles where their models' motions carry them at a time [s]; it returns how far [m] at most.
+    """A function that puts circles where their models are at a time [s]; it returns how far [m] one has moved at most.
 
     circles: (k, [x, y, radius]) [m] at time zero, changed in place; motions: of each, None: it never moves
     """
