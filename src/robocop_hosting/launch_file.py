@@ -1,6 +1,7 @@
 """A launch file -> the nodes and parameters that roslaunch would start and set."""
 
 import json
+import os
 import re
 import sys
 from dataclasses import dataclass, field
@@ -31,7 +32,6 @@ class LaunchNode:
     environment: Mapping[str, str] = field(default_factory=dict)
     not_done: List[str] = field(default_factory=list)  # attributes that have no effect in a grading
     is_own: bool = True  # in a file of the package, not in one that it includes from another one
-    is_found: bool = True  # its program, by roslaunch
 
     @property
     def variables(self) -> Environment:
@@ -92,14 +92,14 @@ def _failure(values: Mapping[str, Any], name: str, top: Path) -> str:
 
 
 def _location(file: str, line: int, top: Path) -> str:
-    path = Path(file)
+    path = Path(os.path.realpath(file))
     shown = path.relative_to(top) if top in path.parents else path
     return f"{shown}, line {line}" if line else str(shown)
 
 
 def _node(values: Dict[str, Any], top: Path) -> LaunchNode:
     file, line = values.pop("file"), values.pop("line")
-    node = LaunchNode(location=_location(file, line, top), is_own=top in Path(file).parents, **values)
+    node = LaunchNode(location=_location(file, line, top), is_own=top in Path(os.path.realpath(file)).parents, **values)
     for variable, value in node.environment.items():
         if not VARIABLE.fullmatch(variable) or "\0" in value:
             raise HostingError(f"{node.location}: <env name={variable[:MAX_SHOWN]!r}>: expected the name of a variable")

@@ -1,10 +1,11 @@
 """A path on disk -> the catkin package there, with its launch file and nodes."""
 
-import contextlib
+import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, Collection, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from xml.etree.ElementTree import Element
 
 from aro_robocop_goto_as.names import PACKAGE
 
@@ -13,7 +14,7 @@ from .errors import HostingError
 from .launch_file import LaunchNode, read
 from .scripts import ASIDE, PARTS, Choice, choose, doubts_of_place, files_below
 from .tree import read_bytes, read_xml
-from .workspace import Environment, Run
+from .workspace import COMPAT, Environment, Run
 
 LAUNCH_FILE = "robocop_goto_as.launch"
 NAME = re.compile(r"[A-Za-z0-9][\w-]*", re.ASCII)  # of a package, as catkin takes it
@@ -21,7 +22,7 @@ MAX_NAMED = 10  # scripts in a message
 SIMULATOR = "aro_sim"  # the lab's package that starts its simulator ...
 OWN_SIMULATOR = PACKAGE, "robocop_sim.py"  # ... and the node of this package that is started then
 VIEWERS = {"rviz", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_image_view", SIMULATOR}  # packages that nothing depends on
-GAZEBO = re.compile(r"gazebo(?!_msgs)")
+SOURCE_SPACE = "src"  # catkin's name for the folder of a workspace's packages
 
 
 @dataclass(frozen=True)
@@ -32,12 +33,12 @@ class Package:
     path: Path
     launch_file: Optional[Path]  # None: its nodes are started directly
     launch_files: Sequence[Path]  # all of them, this one first
-    dependencies: Mapping[str, Path]  # packages beside it on which it depends, by name
+    others: Mapping[str, Path]  # the packages that are built with it, by name
 
     @property
     def sources(self) -> Dict[str, Path]:
         """The packages to be built, by name."""
-        return {self.name: self.path, **self.dependencies}
+        return {self.name: self.path, **self.others}
 
 
 def arguments_of(launch_file: Optional[Path]) -> List[str]:
@@ -47,36 +48,64 @@ def arguments_of(launch_file: Optional[Path]) -> List[str]:
     return [entry.get("name", "") for entry in read_xml(launch_file).iter("arg") if entry.get("value") is None]
 
 
-def find_package(path: str, launch: str = "", beside: bool = False) -> Package:
+def find_package(path: str, launch: str = "", grades: bool = True) -> Package:
     """The package at `path`, or below it; of several the one with the lab's name, or with something to start.
 
-    `launch` is the name of the launch file to start; `beside`: what it needs may lie beside it, outside of `path`.
-    HostingError says what was found instead.
+    `launch` is the name of the launch file to start. A package is graded with those below `path` on which it depends,
+    and run with its whole workspace, as by catkin_make. HostingError says what was found instead.
     """
     top = Path(path).expanduser()
     if not top.is_dir():
         raise HostingError(f"{path}: expected the folder of a catkin package, but there is no folder")
-    manifests = list(_manifests(top.resolve()))
-    if not manifests:
-        raise HostingError(f"{path}: no package.xml in it or below it; expected the folder of a catkin package")
-    named = [(_name(manifest), manifest.parent) for manifest in manifests]
+    top = top.resolve()
+    named = _packages(top)
+    if not named:
+        raise HostingError(
+            f"{path}: no package.xml in it or below it, but for ones with CATKIN_IGNORE; expected a package"
+        )
     name, folder = _chosen(path, named, launch)
     if not NAME.fullmatch(name):
         raise HostingError(f"{folder}/package.xml: expected a <name> of letters, digits, _ and -, got {name!r}")
     launch_file, launch_files = _launch_file(folder, launch)
+    others = ", ".join(path.name for path in launch_files[:MAX_NAMED])
+    if launch_files and launch_file is None and not grades:
+        raise HostingError(f"{folder}: no {LAUNCH_FILE}, but several launch files: add --launch NAME, of {others}")
     if launch_file is None and not choose(folder):
         scripts = [str(path.relative_to(folder)) for path in files_below(folder) if path.suffix == ".py"]
-        others = ", ".join(path.name for path in launch_files[:MAX_NAMED])
         raise HostingError(
             f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called {' or '.join(PARTS)}, "
             f"or one that makes an action server; found: {', '.join(scripts[:MAX_NAMED]) or 'no Python script'}"
-            + (f", and launch files, of which sim --with starts one by --launch NAME: {others}" if others else "")
+            + (f", and launch files: {others}" if others else "")
         )
-    neighbours = sorted(folder.parent.glob("*/package.xml")) if beside else []
-    for manifest in neighbours:
-        with contextlib.suppress(HostingError):  # of a package that may not be needed
-            named.append((_name(manifest), manifest.parent))
-    return Package(name, folder, launch_file, launch_files, _needed(name, folder, named))
+    if grades:
+        return Package(name, folder, launch_file, launch_files, _needed(folder, _beside(name, named)))
+    source = next((it for it in top.parents if it.name == SOURCE_SPACE), top) if folder == top else top
+    return Package(name, folder, launch_file, launch_files, _beside(name, _packages(source)))
+
+
+def _packages(top: Path) -> List[Tuple[str, Path]]:
+    """Names and folders of the packages at `top` or below it, without those of ROS 2 and those that compat/ replaces.
+
+    HostingError if there are only ones of ROS 2.
+    """
+    manifests = {manifest: read_xml(manifest) for manifest in _manifests(top)}
+    types = {
+        it: {(element.text or "").strip() for element in root.iter("build_type")} for it, root in manifests.items()
+    }
+    left = [it for it in manifests if not all(name.startswith("ament") for name in types[it] or [""])]
+    if manifests and not left:
+        ament = next(iter(manifests))
+        raise HostingError(
+            f"{ament}: this is a package of ROS 2 (build type {', '.join(types[ament])}), and here is ROS 1: use its "
+            "branch for ROS noetic, if it has one (git branch -r)"
+        )
+    named = [(_name(it, manifests[it]), it.parent) for it in left]
+    return [entry for entry in named if entry[0] not in COMPAT] or named
+
+
+def _beside(name: str, named: Sequence[Tuple[str, Path]]) -> Dict[str, Path]:
+    """The packages that can be built with the package called `name`, by name: of several of a name the first."""
+    return {it: path for it, path in reversed(named) if it not in (name, *COMPAT) and NAME.fullmatch(it)}
 
 
 def _chosen(path: str, named: Sequence[Tuple[str, Path]], launch: str) -> Tuple[str, Path]:
@@ -111,12 +140,8 @@ def _launch_names(folder: Path) -> str:
     return ", ".join(names[:MAX_NAMED]) or "no launch file"
 
 
-def _needed(name: str, folder: Path, named: Sequence[Tuple[str, Path]]) -> Mapping[str, Path]:
-    """The packages beside the one in `folder` on which it depends, directly or not, by name."""
-    others: Dict[str, Path] = {}
-    for other, path in named:
-        if other != name and NAME.fullmatch(other):
-            others.setdefault(other, path)
+def _needed(folder: Path, others: Mapping[str, Path]) -> Mapping[str, Path]:
+    """Those of the other packages on which the one in `folder` depends, directly or not."""
     needed: Dict[str, Path] = {}
     waiting = [folder]
     while waiting:
@@ -129,16 +154,18 @@ def _needed(name: str, folder: Path, named: Sequence[Tuple[str, Path]]) -> Mappi
 
 
 def _manifests(top: Path) -> Iterator[Path]:
-    """Every package.xml in a folder or below it, except inside another package."""
+    """Every package.xml in a folder or below it, except inside another package, or where catkin ignores all."""
     for folder, folders, files in tree.walk(top, tree.GENERATED):
-        if "package.xml" in files:
+        if "CATKIN_IGNORE" in files:
+            folders.clear()
+        elif "package.xml" in files:
             yield folder / "package.xml"
             folders.clear()
         folders[:] = [name for name in folders if not name.startswith(".")]
 
 
-def _name(manifest: Path) -> str:
-    name = read_xml(manifest).findtext("name")
+def _name(manifest: Path, root: Element) -> str:
+    name = root.findtext("name")
     if not name or not name.strip():
         raise HostingError(f"{manifest}: expected a <name>")
     return name.strip()
@@ -177,25 +204,6 @@ class LaunchPlan:
         """Return whether the package's own launch file starts the lab's simulator."""
         return any(node.package == SIMULATOR or (node.package, node.type) == OWN_SIMULATOR for node in self.others)
 
-    @property
-    def starts_gazebo(self) -> bool:
-        """Return whether the package's own launch file has a node of Gazebo."""
-        return any(GAZEBO.search(node.package) for node in self.others)
-
-
-def mentions_gazebo(package: Package, problem: str) -> bool:
-    """Return whether a launch file that can't be read starts Gazebo: the package's own, or one that `problem` names.
-
-    The package that `problem` misses may be another one that comes with Gazebo, such as xacro.
-    """
-    for path in package.launch_files:
-        if path == package.launch_file or path.name in problem:
-            with contextlib.suppress(HostingError):  # it is not XML
-                tags = [*read_xml(path).iter("include"), *read_xml(path).iter("node")]
-                if any(GAZEBO.search(f"{tag.get('file', '')} {tag.get('pkg', '')}") for tag in tags):
-                    return True
-    return False
-
 
 def read_launch_plan(
     package: Package, folder: Path, environment: Environment, run: Run, arguments: Sequence[str] = ()
@@ -203,7 +211,7 @@ def read_launch_plan(
     """Read the launch files of a package that is built in the workspace at `folder`: the package's own one, then others
     until server and bridge are found. `arguments`: NAME:=VALUE, for the first. HostingError says what is wrong.
     """
-    copy = folder / "src" / package.name
+    copy = Path(os.path.realpath(folder / "src" / package.name))  # the package itself if that is a link
     relays = [path for path in files_below(folder / "devel" / "lib" / package.name) if path.is_file()]
     nodes: List[LaunchNode] = []
     parameters: Dict[str, Any] = {}

@@ -19,8 +19,6 @@ del sys.path[0]  # the grader's modules: not to be found in place of others
 from roslaunch.config import ROSLaunchConfig  # noqa: E402
 from roslaunch.core import Node  # noqa: E402
 from roslaunch.xmlloader import XmlLoader  # noqa: E402
-from roslib.packages import find_node  # noqa: E402
-from rospkg import ResourceNotFound  # noqa: E402
 
 MAX_SHOWN = 100  # characters of a parameter in a message
 MAX_VALUES = 100_000  # in a parameter
@@ -86,16 +84,7 @@ def as_values(node: Node) -> Dict[str, Any]:
         "not_done": list(not_done(node)),
         "file": node.filename,
         "line": line_of_node(node),
-        "is_found": _is_found(node),
     }
-
-
-def _is_found(node: Node) -> bool:
-    """Return whether roslaunch finds the node's program on this machine."""
-    try:
-        return bool(find_node(node.package, node.type))
-    except (ResourceNotFound, OSError):  # the second: of a link that leads nowhere
-        return False
 
 
 def count(value: Any, known: Dict[int, int]) -> int:

@@ -12,18 +12,21 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from xml.sax.saxutils import quoteattr
 
 from aro_robocop_goto_as.errors import RobocopError
+from aro_robocop_goto_as.process import file_lock
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 from aro_robocop_goto_as.process.start import typed
 
-from . import debian
 from .errors import HostingError
-from .node_errors import NodeErrors
-from .package import GAZEBO, LaunchPlan, Package, arguments_of, find_package, mentions_gazebo, read_launch_plan
+from .package import LaunchPlan, Package, arguments_of, find_package, read_launch_plan
 from .scratch import scratch_folder
-from .scripts import FIRST_LINE, NODE_NAMES, Choice, interpreter, start_problems
-from .workspace import Environment, build, compat_environment, places, run_plain, workspace_name
+from .scripts import FIRST_LINE, NODE_NAMES, interpreter, start_problems
+from .workspace import Environment, build_in_place, compat_environment, places, run_plain, workspace_name
 
-NOT_FOUND = re.compile(r'(?:configuration file provided by "|Could NOT find )(\w+)')  # by CMake
+LACKING = re.compile("can't be built|not found|No such file")
+ABOUT_LACKING = (
+    "What is not found has to be installed, or to lie in the same workspace. Gazebo is not here, this simulator takes "
+    "its place. --launch NAME starts another launch file; a file CATKIN_IGNORE in a package's folder leaves it out."
+)
 INTERRUPTED = 130  # exit status, as shells have it after Ctrl-C
 
 
@@ -33,31 +36,15 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
     HostingError if roslaunch can't start one of its scripts, with the reason.
     """
     folder = lock_free_folder(state / "with", workspace_name(package.path))
-    underlay = compat_environment(share, state)
-    try:
-        environment = build(package.sources, folder, underlay)
-    except HostingError as error:
-        missing = dict.fromkeys(NOT_FOUND.findall(str(error)))
-        if not missing:
-            raise
-        lacks = "; ".join(f"CMake finds no {name}: {debian.remedy(name, '(lib{0}-dev|ros-{0})')}" for name in missing)
-        raise HostingError(f"{package.name} can't be built: {lacks} (full log: {folder}/build.log)") from error
     words = [f"{name}:={value}" for name, value in arguments.items()]
     try:
+        environment = build_in_place(package.sources, folder, compat_environment(share, state))
         found = read_launch_plan(package, folder, environment, run_plain, words)
     except HostingError as error:
-        if mentions_gazebo(package, str(error)):
-            raise HostingError(f"{error}. {instead_of_gazebo(package)}") from error
-        raise
-    if found.starts_gazebo:
-        _tell(instead_of_gazebo(package))
-    for node in found.others:
-        if not (node.is_found or GAZEBO.search(node.package)):
-            hint = debian.remedy(node.package, "(ros-|python3-)?{}(-tools)?")
-            _tell(f"{node.location}: there is no {node.type} of the package {node.package} on this machine; {hint}")
+        raise HostingError(f"{error}\n{ABOUT_LACKING}" if LACKING.search(str(error)) else str(error)) from error
     for choice in found.choices.values():
         if not choice.is_installed and (choice.node is not None or package.launch_file is None):
-            make_startable(choice, folder / "src")
+            expect_startable(choice.path)
     return folder, {**environment, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}, found
 
 
@@ -74,40 +61,19 @@ def lock_free_folder(parent: Path, name: str) -> Path:
 def _try_lock(folder: Path) -> bool:
     """Try to lock a folder, by a file beside it, until this process ends; return whether that succeeded."""
     lock = os.open(folder.with_name(f"{folder.name}.lock"), os.O_CREAT | os.O_WRONLY)
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return True
-    except BlockingIOError:
+    is_free = file_lock.lock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    if not is_free:
         os.close(lock)
-        return False
+    return is_free
 
 
-def instead_of_gazebo(package: Package) -> str:
-    """What to start instead of a launch file that starts Gazebo."""
-    others = [path.name for path in package.launch_files[1:]]
-    return (
-        f"{package.launch_files[0].name} starts Gazebo, in whose place this simulator runs: start only your own nodes, "
-        f"by a launch file without Gazebo and --launch NAME (there are: {', '.join(others) or 'no other ones'})"
-    )
-
-
-def make_startable(choice: Choice, source: Path) -> None:
-    """Make sure that roslaunch starts this script, and no other script of its name."""
-    name = choice.path.relative_to(source)
-    if not os.access(choice.path, os.X_OK):
-        _tell(
-            f"{name} is not executable, so roslaunch could not start it. The copy that runs here is made executable; "
-            "fix the original with: chmod +x"
-        )
-        choice.path.chmod(0o755)
-    for problem, remedy in start_problems(choice.path):
-        raise HostingError(f"{name} {problem}, so roslaunch can't start it: {remedy}")
-    program = interpreter(choice.path)
+def expect_startable(script: Path) -> None:
+    """HostingError if roslaunch can't start this script, with the remedy."""
+    for problem, remedy in start_problems(script):
+        raise HostingError(f"{script} {problem}, so roslaunch can't start it: {remedy}")
+    program = interpreter(script)
     if program:
-        _tell(f"{name} is started by {program!r}, which the lab may not have: make {FIRST_LINE} its first line")
-    for other in choice.others:
-        if other.name == choice.path.name and not other.is_symlink():
-            other.chmod(0o644)
+        _tell(f"{script} is started by {program!r}, which the lab may not have: make {FIRST_LINE} its first line")
 
 
 def _tell(words: str) -> None:
@@ -120,11 +86,10 @@ def write_launch_file(package: Package, folder: Path, arguments: Dict[str, str],
     if not found.starts_simulator:
         parts.append('  <include file="$(find aro_sim)/launch/robocop_sim.launch"/>')
     if package.launch_file is not None:
-        copy = folder / "src" / package.name / package.launch_file.relative_to(package.path)
         values = "".join(
             f"\n    <arg name={quoteattr(name)} value={quoteattr(value)}/>" for name, value in arguments.items()
         )
-        parts.append(f"  <include file={quoteattr(str(copy))}>{values}\n  </include>")
+        parts.append(f"  <include file={quoteattr(str(package.launch_file))}>{values}\n  </include>")
     else:
         for part, choice in found.choices.items():
             script = f"type={quoteattr(choice.path.name)} name={quoteattr(NODE_NAMES[part])}"
@@ -179,7 +144,7 @@ def main() -> None:
     interrupt_on_signal()
     try:
         state, share = places()
-        package = find_package(args.path, args.launch, beside=True)
+        package = find_package(args.path, args.launch, grades=False)
         for_package, for_simulator = sort_arguments(
             package, args.arguments, arguments_of(share / "launch" / "robocop_sim.launch")
         )
@@ -203,5 +168,4 @@ def main() -> None:
 
     os.environ.clear()
     os.environ.update({**environment, **tmpdir, "ROBOCOP_SIM_ARGS": for_simulator})
-    with NodeErrors({folder / "src" / name: original for name, original in package.sources.items()}) as node_errors:
-        launch.main([*([] if args.verbose else ["--no-summary"]), "--overview", str(path)], node_errors.show)
+    launch.main([*([] if args.verbose else ["--no-summary"]), "--overview", str(path)])

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import IO, Callable, Dict, Iterator, Mapping, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import InstallationError
-from aro_robocop_goto_as.process import child
+from aro_robocop_goto_as.process import child, file_lock
 
 from . import tree
 from .errors import HostingError
@@ -23,11 +23,15 @@ Run = Callable[[Sequence[str], Environment, "IO[bytes]", "IO[bytes]"], int]  # .
 
 # Variables that catkin's setup files extend, one workspace on top of another.
 CHAINED = ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "PYTHONPATH", "ROS_PACKAGE_PATH")
-COMPAT = ("aro_sim", "gazebo_msgs", "ros_numpy")
+COMPAT = ("aro_sim", "gazebo_msgs", "ros_numpy", "xacro")  # in place of packages of these names in a workspace
 LEFT_OUT = (".git", "__pycache__", "build", "devel", ".robocop")
 NOT_COPIED = shutil.ignore_patterns(*LEFT_OUT, "*.pyc")
+PLAIN = re.compile(r"[A-Za-z0-9/._-]+")  # a path as in_place.cmake takes it
 LANGUAGES = ("cpp", "eus", "lisp", "nodejs", "py")
 CPP = (".cc", ".cpp", ".cxx")
+# As for Noetic's Boost, with _1, _2, ... of boost::bind() outside of its namespace
+CXX_FLAGS = "-DBOOST_BIND_GLOBAL_PLACEHOLDERS -include boost/bind.hpp"
+IN_PLACE = Path(__file__).resolve().with_name("in_place.cmake")
 LOG_LINES = 25  # of a failed build's log that are shown
 MAX_SHOWN = 4_000  # characters of them
 MAX_READ = 200_000  # bytes of a log's end
@@ -105,19 +109,49 @@ def build(sources: Mapping[str, Path], folder: Path, underlay: Environment) -> E
     An earlier build is reused. HostingError shows the end of the log of a build that failed.
     """
     copy_sources(sources, folder)
-    has_cpp = any(Path(it).suffix in CPP for _, _, files in tree.walk(folder / "src") for it in files)
-    return make(folder, " and ".join(sources), underlay, languages=("py", "cpp") if has_cpp else ("py",))
+    return make(folder, " and ".join(sources), underlay)
+
+
+def build_in_place(sources: Mapping[str, Path], folder: Path, underlay: Environment) -> Environment:
+    """As build(), but of the packages themselves, C++ nodes as well, so that messages name their author's files.
+
+    Nothing is written into their folders.
+    """
+    source = folder / "src"
+    tree.remove(source)
+    source.mkdir(parents=True)
+    for name, path in sources.items():
+        (source / name).symlink_to(path)
+    files = (Path(name) for path in sources.values() for _, _, names in tree.walk(path) for name in names)
+    languages, definitions = ["py"], [f"-DCMAKE_PROJECT_Project_INCLUDE={IN_PLACE}"]
+    if any(file.suffix in CPP for file in files):
+        languages.append("cpp")
+        definitions.append(f"-DCMAKE_CXX_FLAGS={CXX_FLAGS}")
+    make(folder, " and ".join(sources), underlay, run_plain, languages, definitions)
+    # Where ROS looks for packages: at their own paths, too
+    found = (str(path if PLAIN.fullmatch(str(path)) else source / name) for name, path in sources.items())
+    (folder / "devel" / ".catkin").write_text(";".join(found))
+    return sourced(folder / "devel" / "setup.bash", underlay)
 
 
 def make(
-    folder: Path, names: str, underlay: Environment, run: Run = run_plain, languages: Sequence[str] = ("py",)
+    folder: Path,
+    names: str,
+    underlay: Environment,
+    run: Run = run_plain,
+    languages: Sequence[str] = ("py",),
+    definitions: Sequence[str] = (),
 ) -> Environment:
-    """As build(), but the sources are already in place; messages are generated for these languages only."""
+    """As build(), but the sources are already in place; messages are generated for these languages only.
+
+    definitions: -DNAME=VALUE, for CMake.
+    """
     log = folder / "build.log"
     tree.remove(log)  # whatever an earlier build made of it: open() would follow a link
+    python = f"-DPYTHON_EXECUTABLE={sys.executable}"
     with open(log, "w+b") as output:
         status = run(
-            ["catkin_make", "-C", str(folder), f"-DPYTHON_EXECUTABLE={sys.executable}", "-DCATKIN_ENABLE_TESTING=OFF"],
+            ["catkin_make", "-C", str(folder), python, "-DCATKIN_ENABLE_TESTING=OFF", *definitions],
             {**underlay, "ROS_LANG_DISABLE": ":".join(f"gen{it}" for it in LANGUAGES if it not in languages)},
             output,
             output,
@@ -168,9 +202,7 @@ def exclusive(folder: Path) -> Iterator[None]:
     """Wait until no other process uses this folder, and lock it; the lock is a file beside the folder."""
     folder.parent.mkdir(parents=True, exist_ok=True)
     with open(folder.parent / f"{folder.name}.lock", "wb") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+        if not file_lock.lock(lock.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB):
             print(f"waiting for another process that uses {folder}", file=sys.stderr, flush=True)
             fcntl.flock(lock, fcntl.LOCK_EX)
         yield

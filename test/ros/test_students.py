@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -143,13 +144,22 @@ MANIFEST = """<package format="2"><name>{}</name><version>0.0.1</version><descri
 <maintainer email="a@example.com">m</maintainer><license>BSD</license><buildtool_depend>catkin</buildtool_depend>{}
 </package>"""
 WORKSPACE = {
-    "drive/package.xml": MANIFEST.format("drive", "<depend>rospy</depend><depend>drive_msgs</depend>"),
+    "drive/package.xml": MANIFEST.format("drive", "<depend>rospy</depend>"),  # which does not name drive_msgs
     "drive/CMakeLists.txt": "cmake_minimum_required(VERSION 3.10)\nproject(drive)\n"
-    "find_package(catkin REQUIRED COMPONENTS drive_msgs)\ncatkin_package()\n",
-    "drive/launch/drive.launch": '<launch><node pkg="drive" type="drive.py" name="drive"/>\n'
+    "find_package(catkin REQUIRED)\ncatkin_package()\n"
+    "catkin_install_python(PROGRAMS scripts/drive.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n",
+    "drive/launch/drive.launch": '<launch><node pkg="drive" type="drive.py" name="drive"/>'
+    '<param name="model" command="$(find xacro)/xacro $(dirname)/model.xacro"/>\n'
     '<node pkg="tf" type="static_transform_publisher" name="gripper" args="0 0 0 0 0 0 base_link gripper 100"/>\n'
     '<node pkg="no_such_package" type="a" name="b"/></launch>\n',
     "drive/scripts/drive.py": "#!/usr/bin/env python3\nfrom drive_msgs.msg import Side\nraise ValueError(Side(1.5))\n",
+    "drive/launch/model.xacro": '<a xmlns:xacro="http://ros.org/wiki/xacro"><xacro:property name="b" value="1"/></a>',
+    "count/package.xml": MANIFEST.format("count", "<depend>roscpp</depend>"),
+    "count/CMakeLists.txt": "cmake_minimum_required(VERSION 3.10)\nproject(count)\n"
+    "find_package(catkin REQUIRED COMPONENTS roscpp)\ncatkin_package()\ninclude_directories(${catkin_INCLUDE_DIRS})\n"
+    "add_library(count count.cpp)\n",
+    "count/count.cpp": "#include <ros/ros.h>\nint twice(int n) { return 2 * n; }\n"
+    "int count() { return boost::bind(&twice, _1)(1); }  // as ROS' tutorials write it\n",
     "drive_msgs/package.xml": MANIFEST.format("drive_msgs", "<depend>std_msgs</depend>"),
     "drive_msgs/CMakeLists.txt": "cmake_minimum_required(VERSION 3.10)\nproject(drive_msgs)\n"
     "find_package(catkin REQUIRED COMPONENTS message_generation std_msgs)\nadd_message_files(FILES Side.msg)\n"
@@ -165,12 +175,16 @@ def test_node_with_its_neighbours_messages_ends_and_is_named_below_the_overview(
     script = tmp_path / "ws" / "drive" / "scripts" / "drive.py"
     script.chmod(0o755)
     with Hosted(tmp_path / "ws", tmp_path) as system:
-        system.wait_until(lambda: "drive has ended" in system.output, "the end of a node")
+        died = "[drive-3] process has died"
+        system.wait_until(lambda: died in system.output and "appear below" in system.output, "a node ends")
         assert running_node(system.uri, "/gripper"), system.output
         above, _, below = system.output.partition("all messages  appear below\n")
-        assert f"drive has ended: ValueError: length: 1.5 ({script}, line 3)" in below
-        assert f'File "{script}", line 3' in above and "process has died" not in above
-        assert "launch/drive.launch, line 3: there is no a of the package no_such_package on this machine" in above
+        assert ("drive has ended already; its last messages are above" in below) is (died in above)
+        assert f'File "{script}", line 3' in system.output
+        assert "cannot launch node of type [no_such_package/a]" in above
+        setup = re.search(r"source \S+/setup.bash --extend", above)[0]
+        done = system.call("bash", "-c", f"{setup} && rosmsg show drive_msgs/Side && rospack find drive")
+        assert done.stdout == f"float32 length\n\n{script.parents[1]}\n"
         done = system.call("rosrun", "aro_robocop_goto_as", "robocop_goto.py", "0.3", "0.3")
         assert "start the system again" in done.stdout and "rosrun" not in done.stdout, done.stdout
         system.end()

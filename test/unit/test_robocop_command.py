@@ -304,6 +304,15 @@ def quick(checkout):
     return lambda *arguments, **settings: robocop(*arguments, root=root, **settings)
 
 
+def test_a_checkout_on_a_disk_without_locks_is_set_up_with_a_word_about_it(quick, tmp_path):
+    source, library = tmp_path / "no_locks.c", tmp_path / "no_locks.so"
+    source.write_text("#include <errno.h>\nint flock(int file, int operation) { errno = ENOLCK; return -1; }\n")
+    subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, source], check=True, timeout=SETUP_TIMEOUT)
+    done = quick("shell", "true", LD_PRELOAD=str(library))
+    assert done.returncode == 0 and "robocop: building the workspace" in done.stderr, done.stderr
+    assert "no file can be locked on" in done.stderr and "waiting" not in done.stderr
+
+
 @pytest.fixture
 def user(quick, checkout):
     """A process that runs out of the first workspace of this checkout until its input ends."""

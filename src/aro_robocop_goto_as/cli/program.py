@@ -15,7 +15,7 @@ from typing import Any, Dict, List, Mapping, NoReturn, Optional
 from xml.etree import ElementTree
 
 from ..names import PACKAGE
-from ..process import signals
+from ..process import file_lock, signals
 from ..process.start import BY_ROBOCOP
 from . import doctor
 
@@ -87,7 +87,7 @@ def _keep_workspace() -> None:
     stamp = workspace / "built-from"
     try:
         lock = os.open(str(stamp), os.O_RDONLY)
-        fcntl.flock(lock, fcntl.LOCK_SH)
+        file_lock.lock(lock, fcntl.LOCK_SH)
         os.stat(stamp)
     except FileNotFoundError:
         refuse(f"{workspace} was replaced at this moment; try again")

@@ -8,7 +8,7 @@ import pytest
 from hosted_packages import LAB, MANIFEST, tree
 
 from robocop_hosting.errors import HostingError
-from robocop_hosting.package import find_package, mentions_gazebo, read_launch_plan
+from robocop_hosting.package import find_package, read_launch_plan
 from robocop_hosting.workspace import run_plain
 
 
@@ -20,23 +20,50 @@ def test_package_is_found_from_its_folder_or_its_workspace(tmp_path: Path) -> No
         assert (package.name, package.path) == (LAB, tmp_path / "src" / LAB)
 
 
-def test_packages_beside_it_are_built_if_it_depends_on_them(tmp_path: Path) -> None:
-    depends = {LAB: "<exec_depend>maths</exec_depend>", "maths": "<depend>units</depend>", "units": "", "other": ""}
-    for name, lines in depends.items():
-        tree(tmp_path, {f"src/{name}/package.xml": MANIFEST.format(name).replace("</package>", f"{lines}</package>")})
-    tree(tmp_path, {f"src/{LAB}/scripts/robocop_goto_as.py": ""})
-    package = find_package(str(tmp_path))
+WORKSPACE = {
+    LAB: "<exec_depend>maths</exec_depend><depend>aro_sim</depend>",
+    "maths": "<depend>units</depend>",
+    "units": "",
+    "other": "",
+}
+
+
+def workspace(top: Path) -> Path:
+    """The lab's package beside others, among them ones that are not to be built, in the folder src of a workspace."""
+    for name, lines in {
+        **WORKSPACE,
+        "aro_sim": "",
+        "ignored": "",
+        "two": "<build_type>ament_cmake</build_type>",
+    }.items():
+        tree(top, {f"src/{name}/package.xml": MANIFEST.format(name).replace("</package>", f"{lines}</package>")})
+    return tree(top, {"src/ignored/CATKIN_IGNORE": "", f"src/{LAB}/scripts/robocop_goto_as.py": ""})
+
+
+def test_of_packages_beside_it_those_are_graded_with_it_on_which_it_depends(tmp_path: Path) -> None:
+    package = find_package(str(workspace(tmp_path)))
     assert package.sources == {name: tmp_path / "src" / name for name in (LAB, "maths", "units")}
+    assert list(find_package(str(tmp_path / "src" / LAB)).sources) == [LAB], "nothing outside of the hand-in"
 
 
-def test_packages_outside_of_the_given_folder_are_built_with_it_if_it_depends_on_them(tmp_path: Path) -> None:
-    depends = {"drive": "<depend>messages</depend>", "messages": "", "other": ""}
-    for name, lines in depends.items():
-        tree(tmp_path, {f"src/{name}/package.xml": MANIFEST.format(name).replace("</package>", f"{lines}</package>")})
-    tree(tmp_path, {"src/drive/side.launch": "<launch/>", "src/broken/package.xml": "<package>"})
-    given = str(tmp_path / "src" / "drive")
-    assert list(find_package(given, beside=True).sources) == ["drive", "messages"]
-    assert list(find_package(given).sources) == ["drive"]
+@pytest.mark.parametrize("path", ["", f"src/{LAB}"])
+def test_package_is_run_with_its_whole_workspace_but_for_what_is_here_already(tmp_path: Path, path: str) -> None:
+    package = find_package(str(workspace(tmp_path) / path), grades=False)
+    assert package.sources == {name: tmp_path / "src" / name for name in WORKSPACE}
+
+
+@pytest.mark.parametrize("name", ["lab_drive", "aro_sim"])
+def test_only_package_is_taken_whatever_its_name_is(tmp_path: Path, name: str) -> None:
+    tree(tmp_path, {"src/it/package.xml": MANIFEST.format(name), "src/it/x.launch": "<launch/>"})
+    assert find_package(str(tmp_path), grades=False).sources == {name: tmp_path / "src" / "it"}
+
+
+def test_script_is_guessed_beside_several_launch_files_only_to_be_graded(tmp_path: Path) -> None:
+    files = {f"launch/{name}.launch": "<launch/>" for name in "ab"}
+    tree(tmp_path, {**files, "package.xml": MANIFEST.format("lab"), "scripts/watch.py": "'move_base_simple'"})
+    assert find_package(str(tmp_path)).launch_file is None
+    with pytest.raises(HostingError, match="several launch files: add --launch NAME, of a.launch, b.launch"):
+        find_package(str(tmp_path), grades=False)
 
 
 @pytest.mark.parametrize(
@@ -74,10 +101,14 @@ def test_of_several_packages_the_only_one_that_has_what_is_asked_for_is_taken(
         ),
         (
             {"package.xml": MANIFEST.format("p"), "b.launch": "<launch/>", "launch/a.launch": "<launch/>"},
-            "no Python script, and launch files, of which sim --with starts one by --launch NAME: a.launch, b.launch",
+            "no Python script, and launch files: a.launch, b.launch",
         ),
         ({"package.xml": MANIFEST.format(LAB)}, "nothing to start: expected launch/robocop_goto_as.launch, or scripts"),
         ({"package.xml": MANIFEST.format(LAB), "src/move.py": "print(1)"}, "action server; found: src/move.py"),
+        (
+            {"package.xml": MANIFEST.format("p").replace("</p", "<build_type>ament_python</build_type></p")},
+            r"package.xml: this is a package of ROS 2 \(build type ament_python\), and here is ROS 1: use its branch",
+        ),
         ({"package.xml": MANIFEST.format("../../up")}, "expected a <name> of letters, digits, _ and -, got '../../up'"),
         (
             {
@@ -167,22 +198,6 @@ def test_packages_are_known_that_the_launch_file_starts_itself_or_by_another_unl
     for words, starts in (([], {"gazebo_ros", "aro_sim"}), (["all:=0"], {"aro_sim"})):
         found = read_launch_plan(package, tmp_path, dict(os.environ), run_plain, words)
         assert {node.package for node in found.others} == starts
-        assert found.starts_gazebo == ("gazebo_ros" in starts)
-
-
-def test_launch_file_that_needs_gazebo_is_known_when_another_package_is_missing(tmp_path: Path) -> None:
-    lines = '<param name="x" command="$(find xacro)/xacro x"/><include file="$(find gazebo_ros)/launch/{}.launch"/>'
-    files = {
-        "package.xml": MANIFEST.format(LAB),
-        "launch/robocop_goto_as.launch": "<launch/>",
-        "launch/world.launch": f"<launch>{lines}</launch>",
-        "launch/messages.launch": f"<launch>{lines.replace('gazebo_ros', 'gazebo_msgs')}</launch>",
-        "scripts/robocop_goto_as.py": "",
-    }
-    package = find_package(str(tree(tmp_path, files)))
-    problem = "launch/{}.launch, line 1: roslaunch can't read it: package xacro not found"
-    known = {name for name in ("world", "messages") if mentions_gazebo(package, problem.format(name))}
-    assert known == {"world"}
 
 
 def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path: Path) -> None:

@@ -14,9 +14,8 @@ from robocop_hosting.launch_file import LaunchNode
 from robocop_hosting.package import LaunchPlan, find_package
 from robocop_hosting.scripts import Choice
 from robocop_hosting.sim_with import (
-    instead_of_gazebo,
+    expect_startable,
     lock_free_folder,
-    make_startable,
     parsed,
     sort_arguments,
     write_launch_file,
@@ -42,12 +41,6 @@ def test_rviz_is_left_to_aro_sim_where_the_launch_file_has_no_argument_for_it(
     assert os.environ["ROBOCOP_RVIZ"] == "false"
 
 
-def test_launch_file_that_starts_gazebo_is_named_with_what_to_start_instead(tmp_path: Path) -> None:
-    files = {"package.xml": MANIFEST.format(LAB), "launch/all.launch": "<launch/>", "launch/nodes.launch": "<launch/>"}
-    said = instead_of_gazebo(find_package(str(tree(tmp_path, files)), "all.launch"))
-    assert said.startswith("all.launch starts Gazebo") and "there are: nodes.launch" in said
-
-
 @pytest.mark.parametrize("package, script", [("aro_sim", "lab_simulator.py"), (PACKAGE, "robocop_sim.py")])
 def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, package: str, script: str) -> None:
     hosted = find_package(str(tree(tmp_path, {"package.xml": MANIFEST.format(LAB), "x.launch": "<launch/>"})))
@@ -61,7 +54,7 @@ def test_launch_file_gets_its_arguments_and_scripts_without_one_become_the_labs_
     included = ElementTree.parse(write_launch_file(package, tmp_path, {"speed": "<1"}, LaunchPlan({}, {}, ()))).findall(
         "include"
     )
-    assert included[-1].attrib == {"file": str(tmp_path / "src" / LAB / "a.launch")}
+    assert included[-1].attrib == {"file": str(package.launch_file)}
     assert [argument.attrib for argument in included[-1]] == [{"name": "speed", "value": "<1"}]
     scripts = {part: Choice(Path(f"{part}.py"), None, False, []) for part in ("server", "bridge")}
     written = write_launch_file(replace(package, launch_file=None), tmp_path, {}, LaunchPlan(scripts, {}, ()))
@@ -81,21 +74,21 @@ def test_options_may_stand_before_or_among_the_arguments(line: str) -> None:
     assert (args.path, args.launch, args.arguments) == ("my_lab", "other.launch", ["sync:=lockstep"])
 
 
-def test_script_that_roslaunch_can_not_start_is_made_executable_or_refused_with_the_reason(
+def test_script_that_roslaunch_can_not_start_is_refused_with_the_remedy_and_left_as_it_is(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     tree(
-        tmp_path, {"lab/a.py": "#!/usr/bin/env python\n", "lab/b.py": "\n#!/usr/bin/env python3\n", "lab/old/a.py": ""}
+        tmp_path, {"a.py": "#!/usr/bin/env python3\n", "b.py": "\n#!/usr/bin/env python3\n", "c.py": "#!/bin/python\n"}
     )
-    script, other = tmp_path / "lab" / "a.py", tmp_path / "lab" / "old" / "a.py"
-    other.chmod(0o755)
-    make_startable(Choice(script, None, False, [other]), tmp_path)
-    assert (script.stat().st_mode & 0o777, other.stat().st_mode & 0o777) == (0o755, 0o644)
-    told = capsys.readouterr().err
-    assert "lab/a.py is not executable" in told
-    assert "lab/a.py is started by '/usr/bin/env python', which the lab may not have" in told
-    with pytest.raises(HostingError, match="lab/b.py has its #! line below other lines, so roslaunch can't start it"):
-        make_startable(Choice(tmp_path / "lab" / "b.py", None, False, []), tmp_path)
+    with pytest.raises(HostingError, match="a.py is not executable, so roslaunch can't start it: chmod .x a.py"):
+        expect_startable(tmp_path / "a.py")
+    assert tmp_path.joinpath("a.py").stat().st_mode & 0o111 == 0
+    for name in ("b.py", "c.py"):
+        (tmp_path / name).chmod(0o755)
+    with pytest.raises(HostingError, match="b.py has its #! line below other lines, so roslaunch can't start it"):
+        expect_startable(tmp_path / "b.py")
+    expect_startable(tmp_path / "c.py")
+    assert "c.py is started by '/bin/python', which the lab may not have" in capsys.readouterr().err
 
 
 def test_two_that_run_the_same_package_at_once_build_in_different_folders(tmp_path: Path) -> None:

@@ -41,6 +41,7 @@ class Launcher(ROSLaunchParent, ProcessListener):
         """Arguments as those of ROSLaunchParent; brief: roslaunch's own messages go to a log."""
         super().__init__(*args, process_listeners=[self], **options)
         self._brief = brief
+        self.ended: List[str] = []  # names of nodes
 
     def process_died(self, process_name: str, exit_code: Optional[int]) -> None:
         """Called by roslaunch; exit_code is minus the signal's number after a signal, None if unknown."""
@@ -49,19 +50,20 @@ class Launcher(ROSLaunchParent, ProcessListener):
             return
         if exit_code != 0 and process.required and process.package in PACKAGES:
             self.failed = True
+        name = process_name.rpartition("-")[0]
+        self.ended += [] if process.respawn else [name]
         if exit_code == 0 and self._brief and not (process.respawn or self.pm.is_shutdown):
-            name = process_name.rpartition("-")[0]
             reasons = "as after `rosnode kill`, or if its program has nothing left to do (is rospy.spin() called?)"
             print(f"[WARN] {name} has ended, without an error, {reasons}", file=sys.stderr)
 
 
-def launch(arguments: List[str], after_overview: Callable[[], None]) -> int:
+def launch(arguments: List[str]) -> int:
     """Run a launch file until it ends; returns the exit status."""
     options = _parsed(arguments)
     deferred = signals.Deferred()
     try:
         _check(options.file)
-        return _run(options, deferred, after_overview)
+        return _run(options, deferred)
     except RobocopError as error:
         print(f"[FATAL] {error.code}: {error}", file=sys.stderr)  # as the simulator's own
     except RecursionError:  # launch/each_robot.launch includes itself for the next robot
@@ -82,7 +84,7 @@ def _parsed(arguments: List[str]) -> argparse.Namespace:
     return parser.parse_args(arguments)
 
 
-def _run(options: argparse.Namespace, deferred: signals.Deferred, after_overview: Callable[[], None]) -> int:
+def _run(options: argparse.Namespace, deferred: signals.Deferred) -> int:
     """Start the processes with signals deferred, and wait for their end; returns the exit status."""
     files = rlutil.resolve_launch_arguments(options.file)
     run_id = rlutil.get_or_generate_uuid(None, False)
@@ -110,7 +112,8 @@ def _run(options: argparse.Namespace, deferred: signals.Deferred, after_overview
         running = [node for node in launcher.config.nodes if not is_page(node) or _has_started(launcher, node)]
         if not launcher.pm.is_shutdown:
             print(overview(running, simulator, logs, not options.quiet), file=screen, flush=True)
-            after_overview()
+            for name in launcher.ended:
+                print(f"[WARN] {name} has ended already; its last messages are above", file=sys.stderr, flush=True)
     if not options.no_summary:
         with deferred:  # a signal during logging would leave its lock held, and the monitor would wait 20 s for it
             rlutil.check_log_disk_usage()
@@ -197,11 +200,11 @@ def _to_log(folder: Path, with_children: bool) -> TextIO:
     return screen
 
 
-def main(arguments: Optional[List[str]] = None, after_overview: Callable[[], None] = lambda: None) -> None:
+def main(arguments: Optional[List[str]] = None) -> None:
     """Launch what these arguments, or the program's own, name; exits with the status of launch()."""
     status = FAILED
     try:
-        status = launch(sys.argv[1:] if arguments is None else arguments, after_overview)
+        status = launch(sys.argv[1:] if arguments is None else arguments)
     finally:
         signals.ignore_all()
     sys.exit(status)

@@ -51,6 +51,7 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
     in_files = f"{logs} (or start with --verbose); warnings and errors appear below"
     rows += [
         ("inspect", f"in a second terminal: {command} shell, then rostopic list, rosnode list, ..."),
+        *_hosted(),
         ("stop", "Ctrl-C in this terminal" + (", or close RViz" if "rviz" in nodes else "")),
         ("all messages", "appear below" if messages_shown else in_files),
     ]
@@ -62,6 +63,14 @@ def _command() -> str:
     uri, command = master.master_uri(), robocop()
     is_known = uri == master.DEFAULT_URI or COMMAND_VARIABLE in os.environ  # a container has one environment
     return command if is_known else f"ROS_MASTER_URI={uri} {command}"
+
+
+def _hosted() -> List[Tuple[str, str]]:
+    """What makes a shell of ./robocop know the messages and programs of a hosted package, if there is one."""
+    devel = os.environ.get("CMAKE_PREFIX_PATH", "").partition(":")[0]
+    if devel == os.environ.get("ROBOCOP_WS", devel):
+        return []
+    return [("", f"for the package's own messages and nodes, type there: source {devel}/setup.bash --extend")]
 
 
 def is_page(node: Any) -> bool:

@@ -81,3 +81,11 @@ def test_the_world_and_a_goal_that_can_be_reached_in_it_are_shown(simulator, wor
     text = overview([server], simulator, Path("/logs"), False)
     assert [it for it in words if it not in text] == []
     assert ("transforms" in text) is ("odom_tf" in simulator)
+
+
+def test_a_hosted_packages_own_messages_are_known_to_a_second_terminal_by_the_line_that_is_shown(monkeypatch):
+    monkeypatch.setenv("ROBOCOP_WS", "/own/devel")
+    for devel in ("/own/devel", "/with/lab/devel"):
+        monkeypatch.setenv("CMAKE_PREFIX_PATH", f"{devel}:/ros")
+        text = overview([], {}, Path("/logs"), False)
+        assert (f"source {devel}/setup.bash --extend\n" in text) is (devel != "/own/devel")
