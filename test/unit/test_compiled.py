@@ -43,7 +43,7 @@ def test_array_of_wrong_shape_type_or_layout_is_refused_by_name(case: str) -> No
     [
         (None, rf"^{NAME} is in none of /.*: build .*\./robocop setup"),
         ("", "can't be used .*aro_caster_version.*: build"),
-        ("int aro_caster_version(void) { return 99; }", "has version 99, these sources need version 6: build"),
+        ("int aro_caster_version(void) { return 99; }", "has version 99, these sources need version 7: build"),
     ],
 )
 def test_library_that_is_missing_or_of_other_sources_is_refused_with_the_command_to_build_it(
@@ -81,7 +81,7 @@ compiled.find = lambda name: os.path.join(folder, compiled.file_name(name))
 sys.exit(pytest.main(["-n", "0", "-p", "no:cacheprovider", "--capture=sys", *arguments]))
 """
 TESTS = (
-    *("physics/test_kinematic.py", "raycast/test_compiled_beams.py", "raycast/test_movers.py", "sensors/test_lidar.py"),
+    *("physics/test_kinematic.py", "raycast/test_compiled_beams.py", "sensors/test_lidar.py"),
     *("sensors/test_odometry.py", "ros/publishing/test_batch.py", "ros/sim/test_sensor_messages.py"),
 )
 

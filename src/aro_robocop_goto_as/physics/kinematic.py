@@ -17,11 +17,11 @@ from ..geometry import Pose2D, Pose3D, quaternion_from_rpy
 from ..raycast.caster_library import GridStruct
 from ..raycast.cross_section import CrossSection
 from ..raycast.grid_index import Tiles
-from ..raycast.movers import moving
 from ..raycast.obstacle_distance import body_heights
 from ..robot.fleet import Fleet, FleetStruct, library
 from ..robot.model import BodyState
 from ..world.model import World
+from ..world.scripted_motion import moving
 
 
 class _BodySectionStruct(ctypes.Structure):

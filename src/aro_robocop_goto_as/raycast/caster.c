@@ -13,7 +13,7 @@
 
 #include "grid.h"
 
-#define ARO_CASTER_VERSION 6
+#define ARO_CASTER_VERSION 7
 #define TURN 6.283185307179586 /* [rad] */
 #define TOLERANCE 1e-9         /* [rad] a beam this close to a shape's edge hits it: none slips between two walls */
 #define ROUGH 2e-5             /* [rad] the bearings between which beams are compared with a circle are wider by this */

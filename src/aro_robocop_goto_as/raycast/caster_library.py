@@ -1,6 +1,6 @@
 """The compiled library of raycast and sensors.lidar, and the C structures of the ray caster.
 
-caster.c casts rays, movers.c moves circles, and sensors/lidar.c makes ranges with noise of exact distances.
+caster.c casts rays, and sensors/lidar.c makes ranges with noise of exact distances.
 """
 
 import ctypes
@@ -10,7 +10,7 @@ from typing import Any
 from .. import compiled
 from ..compiled import members
 
-VERSION = 6  # of the structures below and of movers and sensors.lidar, as in caster.c
+VERSION = 7  # of the structures below and of sensors.lidar, as in caster.c
 REFUSED = {1: "robots: expected numbers of robots in the scene", 2: "poses: expected finite numbers"}  # as in caster.c
 
 
@@ -73,8 +73,6 @@ def load() -> ctypes.PyDLL:
     pointer, integer, unsigned = ctypes.c_void_p, ctypes.c_int64, ctypes.c_uint64
     library.aro_cast.restype, library.aro_cast.errcheck = ctypes.c_int, _require_ok
     library.aro_cast.argtypes = [pointer, pointer, integer, pointer, ctypes.c_double, pointer]
-    library.aro_move.restype = ctypes.c_double
-    library.aro_move.argtypes = [pointer, integer, ctypes.c_double]
     library.aro_normals.restype = library.aro_measure.restype = None
     library.aro_normals.argtypes = [unsigned, unsigned, unsigned, integer, pointer]
     library.aro_measure.argtypes = [pointer, integer, pointer, pointer, pointer]

@@ -12,7 +12,6 @@ from .lidar import Lidar
 from .lidar_profiles import LidarParams
 from .odometry import JointEncoders, OdometryParams, WheelOdometry
 from .sensor import Sensor, SensorContext
-from .sonar import Sonar, SonarParams
 
 
 @dataclass(frozen=True)
@@ -25,8 +24,6 @@ class SensorParams:
     lidar: LidarParams = group(LidarParams)
     bumper: BumperParams = group(BumperParams)
     camera: CameraParams = group(CameraParams)
-
-    sonar: SonarParams = group(SonarParams)
 
     def rates(self) -> Dict[str, int]:
         """The rates [Hz] by the names of their parameters; 0: never."""
@@ -46,5 +43,4 @@ class Sensors:
         self.joints = JointEncoders(params.odometry, context, odometry)
         self.odometry = odometry
         self.lidar = Lidar(params.lidar, context)
-        self.sonar = Sonar(params.sonar, context)
         self.by_topic: Dict[str, Sensor] = {sensor.topic: sensor for sensor in vars(self).values()}

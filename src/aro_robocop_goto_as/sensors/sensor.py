@@ -1,7 +1,7 @@
 """The interface of a sensor, and the robots, world and noise that all sensors share.
 
 Noise is repeatable by seed, stream and step: of the lidar's ranges in lidar.c, of the other sensors here. Each noise
-has streams of its own: from 1 on the IMUs', 2**32 the encoders', from 2**33 on the sonars'; from 2**34 on are free.
+has streams of its own: from 1 on the IMUs', 2**32 the encoders'; from 2**33 on are free.
 """
 
 import ctypes

@@ -3,7 +3,9 @@
 import bisect
 import math
 from dataclasses import dataclass
-from typing import Tuple
+from typing import Callable, Optional, Sequence, Tuple
+
+import numpy as np
 
 from ..geometry import Pose2D, compose, inverse, wrap_angle
 
@@ -43,3 +45,23 @@ class Motion:
     def stops(self) -> Tuple[Waypoint, ...]:
         """The waypoints with the start; empty for a model that only turns."""
         return ((0.0, 0.0, 0.0), *self.waypoints) if self.waypoints else ()
+
+
+def moving(circles: np.ndarray, motions: Sequence[Optional[Motion]]) -> Callable[[float], float]:
+    """A function that puts circles where their models are at a time [s]; it returns how far [m] one has moved at most.
+
+    circles: (k, [x, y, radius]) [m] at time zero, changed in place; motions: of each, None: it never moves
+    """
+    starts = [
+        (row, motion, Pose2D(*map(float, circles[row, :2]))) for row, motion in enumerate(motions) if motion is not None
+    ]
+
+    def move(time: float) -> float:
+        farthest = 0.0
+        for row, motion, start in starts:
+            x, y, _ = motion.carry(start, time)
+            farthest = max(farthest, math.hypot(x - circles[row, 0], y - circles[row, 1]))
+            circles[row, :2] = x, y
+        return farthest
+
+    return move

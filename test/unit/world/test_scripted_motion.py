@@ -13,7 +13,7 @@ from aro_robocop_goto_as.shapes import Box, Cylinder
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.world.model import Obstacle, World
-from aro_robocop_goto_as.world.scripted_motion import Motion
+from aro_robocop_goto_as.world.scripted_motion import Motion, moving
 
 PATROL = Motion(Pose2D(1.0, 2.0, math.pi / 2), waypoints=((4.0, 2.0, 0.0), (6.0, 2.0, 1.0), (10.0, 0.0, 0.0)))
 
@@ -64,3 +64,12 @@ def test_robot_is_not_pushed_through_a_wall(burger):
     for _ in range(2400):
         sim.advance({})
         assert sim.world_from_footprint().x <= 0.15 - 0.105
+
+
+def test_circles_are_put_where_the_motions_of_their_models_carry_them() -> None:
+    circles = np.array([(7.0, 8.0, 0.9), (1.0, 2.5, 0.1)])
+    move = moving(circles, [None, PATROL])
+    farthest = move(5.0)
+    assert circles[0].tolist() == [7.0, 8.0, 0.9]
+    assert tuple(circles[1, :2]) == PATROL.carry(Pose2D(1.0, 2.5), 5.0)[:2]
+    assert farthest == math.hypot(circles[1, 0] - 1.0, circles[1, 1] - 2.5) > 0.0

@@ -25,7 +25,6 @@ from ...sensors.lidar import Lidar
 from ...sensors.lidar_profiles import LidarProfile
 from ...sensors.odometry import JointEncoders, WheelOdometry
 from ...sensors.sensor import Sensor
-from ...sensors.sonar import Sonar
 from ...simulation.params import FrameNames
 from .. import convert
 from ..publishing.packed import PackedMessage, counter
@@ -93,18 +92,6 @@ def packed_transforms(transforms: Sequence[Tuple[str, str, Row]]) -> PackedMessa
     for index, (_, _, pose) in enumerate(transforms):
         sources.update({f"transforms[{index}].header": None, f"transforms[{index}].transform": pose})
     return PackedMessage(TFMessage(template), sources)
-
-
-def packed_range(frame: str, sonar: Sonar, distance: Row) -> PackedMessage:
-    """The range (1,) [m] of one robot's sonar."""
-    template = sensor_msgs.Range(
-        header=Header(frame_id=frame),
-        radiation_type=sonar.radiation_type,
-        field_of_view=sonar.angle,
-        min_range=sonar.range_min,
-        max_range=sonar.range_max,
-    )
-    return PackedMessage(template, {"header": counter(), "range": distance})
 
 
 class RobotFrames:
@@ -186,9 +173,3 @@ def _(sensor: WheelOdometry, robot: RobotFrames, real: bool) -> List[SensorTopic
 def _(sensor: Lidar, robot: RobotFrames, real: bool) -> List[SensorTopic]:
     message = packed_scan(sensor.profile, robot.scan, sensor.ranges[robot.row])
     return [SensorTopic(robot.of(sensor.topic), sensor_msgs.LaserScan, message)]
-
-
-@topics_of.register
-def _(sensor: Sonar, robot: RobotFrames, real: bool) -> List[SensorTopic]:
-    message = packed_range(robot.of(sensor.frame), sensor, sensor.ranges[robot.row])
-    return [SensorTopic(robot.of(sensor.topic), sensor_msgs.Range, message)]

@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 
-from ...geometry import Pose2D, Pose3D, lifted
+from ...geometry import Pose2D, Pose3D, lifted, wrap_angle
 from ...shapes import Plane, Walls
 from ..model import Obstacle, Occupancy, World
 from .image import read_cells
@@ -19,19 +19,21 @@ def read_map(path: str) -> World:
 
     Unknown cells are neither walls nor free. WorldError as read_spec and read_image.
     """
-    spec = read_spec(path)
-    occupancy = Occupancy(read_cells(spec), spec.resolution, spec.origin)
+    spec, unknown, different = read_spec(path)
+    x, y, yaw = spec.origin
+    occupancy = Occupancy(read_cells(spec), spec.resolution, Pose2D(x, y, wrap_angle(yaw)))
     # In mode raw, the values are the image's own, and the threshold counts.
     lowest_wall = math.floor(100.0 * spec.occupied_thresh) + 1 if spec.mode == "raw" else 100
     walls = Walls(edges_of_cells(occupancy.cells >= lowest_wall) * spec.resolution, WALL_HEIGHT)
     obstacles = (
         Obstacle("ground_plane/link/collision", Pose3D(), Plane((0.0, 0.0, 1.0))),
-        Obstacle("map/walls/collision", lifted(spec.origin), walls),
+        Obstacle("map/walls/collision", lifted(occupancy.origin), walls),
     )
     name = os.path.splitext(os.path.basename(path))[0]
-    ignored = tuple(f"key '{key}' of the map" for key in spec.unknown)
-    different = (spec.image_beside,) if spec.image_beside else ()
-    return World(name, obstacles, Pose2D(), ignored, path, occupancy=occupancy, has_spawn=False, approximated=different)
+    ignored = tuple(f"key '{key}' of the map" for key in unknown)
+    return World(
+        name, obstacles, Pose2D(), ignored, path, occupancy=occupancy, has_spawn=False, approximated=tuple(different)
+    )
 
 
 def edges_of_cells(occupied: np.ndarray) -> np.ndarray:

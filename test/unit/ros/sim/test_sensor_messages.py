@@ -1,6 +1,5 @@
 """Packed messages, filled by batch.c, have byte for byte the form in which ROS sends ordinary messages."""
 
-import math
 import struct
 from dataclasses import replace
 from io import BytesIO
@@ -15,20 +14,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import Imu, LaserScan, Range
-from std_msgs.msg import Header
+from sensor_msgs.msg import Imu, LaserScan
+from std_msgs.msg import Bool, Header
 from support import driven
 from tf2_msgs.msg import TFMessage
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D, compose, yaw_of
+from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D, compose, yaw_of
 from aro_robocop_goto_as.ros import convert
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage
 from aro_robocop_goto_as.ros.sim import sensor_messages as packed
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics, packed_clock
+from aro_robocop_goto_as.sensors.bumper import Bumper
 from aro_robocop_goto_as.sensors.imu import ImuParams
 from aro_robocop_goto_as.sensors.lidar_profiles import PROFILES
-from aro_robocop_goto_as.sensors.sonar import Sonar
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 NUMBER = st.floats(-1e6, 1e6)
@@ -128,32 +127,23 @@ def test_odometry_of_a_real_robot_has_no_covariances_and_its_imu_those_of_the_fi
     assert set(odom.pose.covariance + odom.twist.covariance) == {0.0}
 
 
-def test_range_of_a_sonar_is_in_its_own_frame_which_is_on_tf_static(simulator: Callable[..., Simulator]) -> None:
-    topics = StepTopics(simulator(sonar=True))
-    message = Range().deserialize(_body(topics.topics["sonar"]))
-    assert (message.header.frame_id, message.radiation_type) == ("robot_1/sonar_link", Range.ULTRASOUND)
-    assert (message.min_range, message.max_range) == pytest.approx((0.02, 4.0))
-    frames = {(t.header.frame_id, t.child_frame_id): t.transform.translation for t in topics.static_transforms()}
-    mount = frames["robot_1/base_link", "robot_1/sonar_link"]
-    assert (mount.x, mount.z) == pytest.approx((0.038, 0.04))
-
-
-@given(st.floats(0.02, 4.0), STAMP)
-def test_range(distance: float, stamp: "tuple[int, int]") -> None:
-    message = packed.packed_range("sonar_link", Sonar, np.array([distance]))  # type: ignore[arg-type]
-    expected = Range(Header(0, Time(*stamp), "sonar_link"), Range.ULTRASOUND, math.radians(15.0), 0.02, 4.0, distance)
-    assert filled(message, stamp) == sent(expected)
+def test_a_sensor_with_a_mount_has_a_frame_of_its_own_on_tf_static(simulator: Callable[..., Simulator]) -> None:
+    sim = simulator()
+    sim.sensors.bumper.frame, sim.sensors.bumper.mounts = "bumper_link", (Pose3D((0.1, 0.0, 0.02)),)
+    frames = {(t.header.frame_id, t.child_frame_id): t.transform for t in StepTopics(sim).static_transforms()}
+    at = frames["robot_1/base_link", "robot_1/bumper_link"].translation
+    assert (at.x, at.y, at.z) == (0.1, 0.0, 0.02)
 
 
 def test_a_derived_sensor_has_the_message_of_the_sensor_that_it_is_derived_from(
     simulator: Callable[..., Simulator],
 ) -> None:
-    class RearSonar(Sonar):
-        topic, frame = "rear_sonar", "rear_sonar_link"
+    class RearBumper(Bumper):
+        topic = "rear_bumper"
 
-    sim = simulator(sonar=True)
-    (topic,) = packed.topics_of(RearSonar(sim.params.sensors.sonar, sim.context), StepTopics(sim).robots[0], False)
-    assert (topic.name, topic.kind) == ("robot_1/rear_sonar", Range)
+    sim = simulator()
+    (topic,) = packed.topics_of(RearBumper(sim.params.sensors.bumper, sim.context), StepTopics(sim).robots[0], False)
+    assert (topic.name, topic.kind) == ("robot_1/rear_bumper", Bool)
 
 
 def test_what_a_step_publishes_has_the_time_of_this_step_as_its_stamp(simulator: Callable[..., Simulator]) -> None:
