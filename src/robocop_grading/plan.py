@@ -1,22 +1,20 @@
 """What a grading plan consists of: limits, the checks with their points, and the scenarios that they examine."""
 
 import hashlib
-from dataclasses import MISSING, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Iterable, List, Sequence, Tuple
 
-from aro_robocop_goto_as.param_loading import parameter, several
+from aro_robocop_goto_as.param_loading import parameter
 
 from .checks import CHECKS
 from .errors import PlanError
 from .handout import Limits
 from .packages import Packages
-from .scenarios import MIDDLE, Scenario
+from .scenarios import BRIDGE_SCENARIOS, MIDDLE, START, Scenario
 
 PARTS = ("server", "bridge")
 AGAIN = "_again"  # ends the name of a scenario's repetition with a new node
-START = "start"  # the recording of the node's start; every server has one
-BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "pending")  # fixed, not in the plan's file
 TICK = 0.1  # [s] of a run
 
 
@@ -27,13 +25,21 @@ def total(points: Iterable[float]) -> float:
 
 @dataclass(frozen=True)
 class CheckPlan:
-    """The points of a check and the scenarios that it examines."""
+    """The points of a check."""
 
     name: str
-    part: str = parameter(choices=PARTS)
     points: float = parameter(low=0.0, high=1e6)
-    scenarios: Tuple[str, ...] = several(default=MISSING)
     extra: bool = False
+
+    @property
+    def part(self) -> str:
+        """The part that the check examines."""
+        return CHECKS[self.name].part
+
+    @property
+    def scenarios(self) -> Tuple[str, ...]:
+        """The scenarios that the check examines."""
+        return CHECKS[self.name].scenarios
 
     @property
     def contract(self) -> str:

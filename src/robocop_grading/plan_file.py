@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Mapping, Optional, Sequence, Type, TypeVar
+from typing import Any, Optional, Type, TypeVar
 
 import yaml
 
@@ -14,8 +14,8 @@ from .checks import CHECKS
 from .errors import PlanError
 from .handout import Limits
 from .packages import Packages
-from .plan import BRIDGE_SCENARIOS, START, CheckPlan, Plan
-from .scenarios import MAX_SEED, MIDDLE, SCRIPTS, drawn
+from .plan import CheckPlan, Plan
+from .scenarios import MAX_SEED, MIDDLE, drawn
 
 T = TypeVar("T")
 
@@ -40,12 +40,10 @@ def load(path: Path, seed: int = MIDDLE) -> Plan:
     except (ValueError, RecursionError, yaml.YAMLError) as error:
         raise PlanError(f"{path}: {error}") from error
     file = _loaded(_File, raw, f"{path}")
-    scenarios = drawn(seed)
-    known = {"server": (START, *SCRIPTS), "bridge": BRIDGE_SCENARIOS}
-    checks = tuple(_check_plan(name, entry, known, f"{path}: checks") for name, entry in file.checks.items())
+    checks = tuple(_check_plan(name, entry, f"{path}: checks") for name, entry in file.checks.items())
     limits = _loaded(Limits, file.limits or {}, f"{path}: limits")
     packages = _loaded(Packages, file.packages or {}, f"{path}: packages")
-    return Plan(path, limits, scenarios, checks, seed, packages=packages)
+    return Plan(path, limits, drawn(seed), checks, seed, packages=packages)
 
 
 def _loaded(cls: Type[T], raw: Any, where: str) -> T:
@@ -56,12 +54,7 @@ def _loaded(cls: Type[T], raw: Any, where: str) -> T:
     return from_dict(cls, {str(it): value for it, value in raw.items() if value is not None or it not in known}, where)
 
 
-def _check_plan(name: str, raw: Any, known: Mapping[str, Sequence[str]], where: str) -> CheckPlan:
+def _check_plan(name: str, raw: Any, where: str) -> CheckPlan:
     if name not in CHECKS:
         raise PlanError(f"{where}: unknown: {name}; known: {', '.join(sorted(CHECKS))}")
-    check = _loaded(CheckPlan, {**raw, "name": name} if isinstance(raw, dict) else raw, f"{where}: {name}")
-    for scenario in check.scenarios:
-        if scenario not in known[check.part]:
-            names = ", ".join(known[check.part])
-            raise PlanError(f"{where}: {name}: scenarios: unknown for a {check.part}: {scenario!r}; known: {names}")
-    return check
+    return _loaded(CheckPlan, {**raw, "name": name} if isinstance(raw, dict) else raw, f"{where}: {name}")

@@ -36,8 +36,8 @@ with Client(sys.argv[1], timeout=60.0) as client:
 PLAN = """
 limits: {}
 checks:
-  action_server: {part: server, points: 1, scenarios: [start]}
-  already_there: {part: server, points: 1, scenarios: [already_there]}
+  action_server: {points: 1}
+  already_there: {points: 1}
 """
 
 

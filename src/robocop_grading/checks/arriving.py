@@ -19,7 +19,7 @@ WAITS = f"The robot stands at the goal, but the result comes later: {END_THERE}"
 TURNS = f"The robot turns at the goal: {END_THERE}"
 
 
-@check("track")
+@check("server", "left right", plot="track")
 def reaches_goal(record: Record, limits: Limits) -> Verdict:
     """The goal succeeds when the robot is closer than 0.1 m, and not before."""
     return of_goals(record, lambda goal: wrong_success(record, goal, limits) or _success_too_late(record, goal, limits))
@@ -65,7 +65,7 @@ def _lateness(record: Record, goal: SentGoal, samples: Sequence[Sample], limits:
     )
 
 
-@check("track")
+@check("server", "behind", plot="track")
 def goal_behind(record: Record, limits: Limits) -> Verdict:
     """Goals behind the robot are reached by the shorter turn, even where the heading wraps from pi to -pi."""
     verdict = of_goals(record, lambda goal: wrong_success(record, goal, limits) or _long_turn(record, goal))
@@ -90,13 +90,13 @@ def _long_turn(record: Record, goal: SentGoal) -> Optional[Failed]:
     return Failed(wanted, seen, goal.time, cause, Kind.LONG_TURN, goal)
 
 
-@check("track")
+@check("server", "far", plot="track")
 def far_goal(record: Record, limits: Limits) -> Verdict:
     """A goal several metres away is reached."""
     return reaches_goal(record, limits)
 
 
-@check("track")
+@check("server", "already_there", plot="track")
 def already_there(record: Record, limits: Limits) -> Verdict:
     """A goal closer than 0.1 m succeeds at once, and the robot stays where it is."""
     return of_goals(

@@ -37,7 +37,7 @@ def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Fa
     return replace(failure, cause=cause)
 
 
-@check("track", explain=_explained)
+@check("bridge", "click", plot="track", explain=_explained)
 def forwards_goal(record: Record, limits: Limits) -> Verdict:
     """Each 2D Nav Goal is sent to robocop_goto_as exactly once, with the same position; no other goal is sent."""
     if not record.clicks:
@@ -63,7 +63,7 @@ def forwards_goal(record: Record, limits: Limits) -> Verdict:
     return PASSED
 
 
-@check("track")
+@check("bridge", "click", plot="track")
 def reports_status(record: Record, limits: Limits) -> Verdict:
     """A timer reports the status of the action server periodically."""
     if "watching" not in record.marks:
@@ -86,7 +86,7 @@ def _unasked_cancel(record: Record) -> Optional[Failed]:
     return None
 
 
-@check("track", explain=_explained)
+@check("bridge", "replace click", plot="track", explain=_explained)
 def cancels_older(record: Record, limits: Limits) -> Verdict:
     """A newer 2D Nav Goal cancels the older goal and is then sent itself; nothing else cancels a goal."""
     if record.name == "click":
@@ -115,7 +115,7 @@ def cancels_older(record: Record, limits: Limits) -> Verdict:
     return PASSED
 
 
-@check("track")
+@check("bridge", "no_server click", plot="track")
 def waits_for_server(record: Record, limits: Limits) -> Verdict:
     """A bridge that is started before the server waits for it, and then works."""
     if record.name == "no_server":
@@ -130,7 +130,7 @@ def waits_for_server(record: Record, limits: Limits) -> Verdict:
     return Failed(wanted, "no goal", clicked, causes.NOTHING_SENT, Kind.NO_GOAL)
 
 
-@check("track")
+@check("bridge", "no_server click replace frame", plot="track")
 def bridge_alive(record: Record, limits: Limits) -> Verdict:
     """The bridge runs to the end without an exception."""
     if record.name == "frame" and causes.looks_up_too_early(record):
@@ -145,7 +145,7 @@ def _crash(record: Record, limits: Limits) -> Optional[Failed]:
     return None
 
 
-@check("track", explain=_explained)
+@check("bridge", "frame", plot="track", explain=_explained)
 def goal_frame(record: Record, limits: Limits) -> Verdict:
     """A goal given in another frame is transformed to odom (the handout's closing question)."""
     if not record.clicks:

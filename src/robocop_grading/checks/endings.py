@@ -157,13 +157,13 @@ def _took_longer(record: Record, goal: SentGoal) -> bool:
     return bool(record.results_of(goal)) and not at_once(record, goal)
 
 
-@check("states")
+@check("server", "left right", plot="states")
 def success_result(record: Record, limits: Limits) -> Verdict:
     """The result of a reached goal has success true and a message."""
     return _result(record, SUCCEEDED, True)
 
 
-@check("states")
+@check("server", "obstacle", plot="states")
 def failure_result(record: Record, limits: Limits) -> Verdict:
     """The result of an aborted goal has success false and a message."""
     return _result(record, ABORTED, False)
@@ -183,7 +183,7 @@ def _result(record: Record, status: int, success: bool) -> Verdict:
     return PASSED
 
 
-@check("speeds")
+@check("server", "start left right obstacle cancel cancel_turning newer_goal", plot="speeds")
 def stands_at_end(record: Record, limits: Limits) -> Verdict:
     """The robot moves only while a goal is active."""
     judged = False
@@ -224,7 +224,7 @@ def keeps_moving(record: Record, result: Result, until: float) -> str:
     )
 
 
-@check("states")
+@check("server", "left behind obstacle cancel newer_goal", plot="states")
 def one_ending(record: Record, limits: Limits) -> Verdict:
     """Each goal gets exactly one terminal state, set by the server's own code."""
     judged = False

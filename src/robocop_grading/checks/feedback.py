@@ -54,7 +54,7 @@ def _rate_explained(records: Mapping[str, Record], _names: Sequence[str], failur
     return failure
 
 
-@check("errors", explain=_rate_explained)
+@check("server", "left right behind far", plot="errors", explain=_rate_explained)
 def feedback_rate(record: Record, limits: Limits) -> Verdict:
     """While a goal is active, and not after its end, feedback is published about ten times a second."""
     judged = False
@@ -134,7 +134,7 @@ def _explained(index: int, records: Mapping[str, Record], names: Sequence[str], 
     return replace(failure, cause=cause)
 
 
-@check("errors", explain=partial(_explained, POSITION))
+@check("server", "left right behind far", plot="errors", explain=partial(_explained, POSITION))
 def feedback_position(record: Record, limits: Limits) -> Verdict:
     """position_error in the feedback is the distance to the goal."""
     pairs = _compared(POSITION, record)
@@ -143,7 +143,7 @@ def feedback_position(record: Record, limits: Limits) -> Verdict:
     return _untrue(POSITION, pairs, limits.position_tolerance) or _old(record, POSITION) or PASSED
 
 
-@check("errors", explain=partial(_explained, ANGLE))
+@check("server", "left right behind far", plot="errors", explain=partial(_explained, ANGLE))
 def feedback_angle(record: Record, limits: Limits) -> Verdict:
     """angle_error in the feedback is the angle from the heading to the goal's direction, within +-pi."""
     pairs = _compared(ANGLE, record)

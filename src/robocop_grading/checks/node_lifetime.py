@@ -9,7 +9,7 @@ from ..handout import ACTION, Limits
 from ..record import NodeEnd, Record
 from .output import DELAY, TRACEBACK, TRACEBACK_LOGGED, UNCAUGHT, first_error, last_error
 from .topic_use import other_action
-from .verdict import PASSED, Failed, NotReached, Verdict, check
+from .verdict import EVERY_SCENARIO, PASSED, Failed, NotReached, Verdict, check
 
 RAISED = 1  # exit status of a Python whose main thread has not caught an exception
 
@@ -19,7 +19,7 @@ def closest(name: str, others: Sequence[str]) -> str:
     return next(iter(difflib.get_close_matches(name, others, n=1, cutoff=0.5)), "")
 
 
-@check("states")
+@check("server", "start", plot="states")
 def action_server(record: Record, limits: Limits) -> Verdict:
     """The node provides an action server robocop_goto_as of the handout's type."""
     if record.name != "start":
@@ -52,7 +52,7 @@ def _died(cause: str, end: NodeEnd, record: Record) -> Failed:
     return Failed("a running node", f"exit status {end.status}", end.time, f"{cause}: {reason}")
 
 
-@check("states")
+@check("server", EVERY_SCENARIO, plot="states")
 def no_exception(record: Record, limits: Limits) -> Verdict:
     """No callback or thread raises an uncaught exception."""
     fatal = [it.time for it in record.node_ends if it.status == RAISED and not it.reason]
@@ -64,7 +64,7 @@ def no_exception(record: Record, limits: Limits) -> Verdict:
     return PASSED
 
 
-@check("states")
+@check("server", EVERY_SCENARIO, plot="states")
 def stays_alive(record: Record, limits: Limits) -> Verdict:
     """The node keeps running to the end."""
     for end in record.node_ends:

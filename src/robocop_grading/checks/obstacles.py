@@ -42,7 +42,7 @@ def _explained(records: Mapping[str, Record], _names: Sequence[str], failure: Fa
     )
 
 
-@check("distances", explain=_explained)
+@check("server", "obstacle near_wall pillar_left pillar_right", plot="distances", explain=_explained)
 def stops_at_obstacle(record: Record, limits: Limits) -> Verdict:
     """An obstacle closer than 0.3 m ahead aborts the goal before the robot touches it."""
     if not record.goals:
@@ -109,13 +109,13 @@ def _approach(record: Record, goal: SentGoal) -> Optional[Failed]:
     return Failed(wanted, seen, goal.time, cause, Kind.MOVES_FIRST, goal)
 
 
-@check("distances")
+@check("server", "beside", plot="distances")
 def only_ahead_counts(record: Record, limits: Limits) -> Verdict:
     """Obstacles beside or behind the robot do not abort a goal."""
     return of_goals(record, lambda goal: wrong_success(record, goal, limits))
 
 
-@check("distances")
+@check("server", "odd_scan odd_scan_wall", plot="distances")
 def odd_scans(record: Record, limits: Limits) -> Verdict:
     """Ranges of inf, 0 and NaN are not obstacles, and do not hide obstacles."""
     if not record.goals:

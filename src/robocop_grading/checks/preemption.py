@@ -17,7 +17,7 @@ SILENT = 1.0  # [s] after which feedback, if it goes on, has come
 IN_EACH = "is is_preempt_requested() called in each iteration"
 
 
-@check("states")
+@check("server", "cancel cancel_turning", plot="states")
 def cancel(record: Record, limits: Limits) -> Verdict:
     """A cancelled goal ends as PREEMPTED without delay, and without success."""
     if not record.cancels:
@@ -28,7 +28,7 @@ def cancel(record: Record, limits: Limits) -> Verdict:
     return _preempted(record, goal, request.time, limits, "cancel request", hint) or PASSED
 
 
-@check("states")
+@check("server", "newer_goal", plot="states")
 def newer_goal(record: Record, limits: Limits) -> Verdict:
     """A newer goal preempts the older one and is reached."""
     if len(record.goals) < 2:
@@ -88,7 +88,7 @@ def _begins_other(record: Record, goal: SentGoal, requested: float, end: float) 
     return bool(others) or (bool(waiting) and stands)
 
 
-@check("states")
+@check("server", "behind obstacle cancel newer_goal", plot="states")
 def next_goal(record: Record, limits: Limits) -> Verdict:
     """After a goal has ended, in any state, the next one is served."""
     if len(record.goals) < 2 or not record.results_of(record.goals[-2]):

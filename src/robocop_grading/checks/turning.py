@@ -50,7 +50,7 @@ def _situations(record: Record, goal: SentGoal, low: float, high: float) -> List
     return situations
 
 
-@check("speeds")
+@check("server", "left right behind far", plot="speeds")
 def turns_to_goal(record: Record, limits: Limits) -> Verdict:
     """While angle_error is beyond 0.1 rad the robot turns towards the goal without driving."""
     judged = False
@@ -144,7 +144,7 @@ def _never_turned(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fa
     return None
 
 
-@check("speeds")
+@check("server", "left right far", plot="speeds")
 def drives_straight(record: Record, limits: Limits) -> Verdict:
     """While angle_error is within 0.1 rad the robot drives straight ahead."""
     judged = False

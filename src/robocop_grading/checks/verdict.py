@@ -3,10 +3,11 @@
 import enum
 import re
 from dataclasses import dataclass
-from typing import Callable, Dict, Mapping, Optional, Sequence, Union
+from typing import Callable, Dict, Mapping, Optional, Sequence, Tuple, Union
 
 from ..handout import Limits
 from ..record import ABORTED, PREEMPTED, SUCCEEDED, Record, SentGoal
+from ..scenarios import SCRIPTS, START
 
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
@@ -85,10 +86,13 @@ Explain = Callable[[Mapping[str, Record], Sequence[str], Failed], Failed]  # all
 class Check:
     """A function that judges one record, as the check of its name; `plot` names the plot that illustrates it.
 
-    `explain` names the causes of a failure that fit all scenarios which the check examines.
+    It examines these scenarios of this part, server or bridge; `explain` names the causes of a failure that fit all of
+    them.
     """
 
     judge: Judge
+    part: str
+    scenarios: Tuple[str, ...]
     plot: str
     explain: Optional[Explain] = None
 
@@ -102,13 +106,14 @@ class Check:
 
 
 CHECKS: Dict[str, Check] = {}
+EVERY_SCENARIO = " ".join((START, *SCRIPTS))  # of a server
 
 
-def check(plot: str, explain: Optional[Explain] = None) -> Callable[[Judge], Judge]:
-    """Have a function judge records as the check of its name."""
+def check(part: str, scenarios: str, plot: str, explain: Optional[Explain] = None) -> Callable[[Judge], Judge]:
+    """Have a function judge records of these scenarios as the check of its name."""
 
     def register(judge: Judge) -> Judge:
-        CHECKS[judge.__name__] = Check(judge, plot, explain)
+        CHECKS[judge.__name__] = Check(judge, part, tuple(scenarios.split()), plot, explain)
         return judge
 
     return register

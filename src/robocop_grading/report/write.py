@@ -18,8 +18,9 @@ from ..checks import CHECKS
 from ..errors import GradingSetupError
 from ..grades import CheckOutcome, CheckResult, Grade, Mistake, scored
 from ..judge import Records
-from ..plan import BRIDGE_SCENARIOS, START, Plan
+from ..plan import Plan
 from ..record import Record
+from ..scenarios import BRIDGE_SCENARIOS, START
 from ..texts import printable, printable_lines, shortened
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}

@@ -12,9 +12,9 @@ from aro_robocop_goto_as.ros import markers
 
 from .. import record as rec
 from ..handout import ACTION
-from ..plan import AGAIN, START, TICK
+from ..plan import AGAIN, TICK
 from ..record import Record
-from ..scenarios import Push, Scenario, Step
+from ..scenarios import START, Push, Scenario, Step
 from ..sites import SITE
 from .job import Job
 from .progress import Progress

@@ -17,11 +17,11 @@ from robocop_grading.report.write import as_classroom, as_gradescope
 SMALL = replace(
     PLAN,
     checks=(
-        CheckPlan("action_server", "server", 1.0, ("start",)),
-        CheckPlan("feedback_angle", "server", 1.5, ("left",)),
-        CheckPlan("turns_to_goal", "server", 2.0, ("left",)),
-        CheckPlan("stands_at_end", "server", 0.5, ("left",)),
-        CheckPlan("forwards_goal", "bridge", 4.0, ("click",)),
+        CheckPlan("action_server", 1.0),
+        CheckPlan("feedback_angle", 1.5),
+        CheckPlan("turns_to_goal", 2.0),
+        CheckPlan("stands_at_end", 0.5),
+        CheckPlan("forwards_goal", 4.0),
     ),
 )
 EARLY = (rec.Result(5.0, "g", rec.SUCCEEDED, True, "there"),)

@@ -12,8 +12,9 @@ from robocop_grading.classroom.results import StoredGrade
 from robocop_grading.classroom.table import table
 from robocop_grading.cli import as_text, progress
 from robocop_grading.grades import CheckOutcome, CheckResult, Grade, completed
-from robocop_grading.plan import BRIDGE_SCENARIOS, Plan
+from robocop_grading.plan import Plan
 from robocop_grading.report.write import as_classroom, as_gradescope, as_json, write
+from robocop_grading.scenarios import BRIDGE_SCENARIOS
 
 MISTAKE = Failed("a goal", "none", 1.0, "No goal was sent.")
 FORWARDS = CheckResult("forwards_goal", "bridge", "A click is a goal.", CheckOutcome.PASSED, 2.0, 2.0, False)
