@@ -96,7 +96,6 @@ class SimNode(Outputs):
     def report(self) -> None:
         """Publish what is due by the wall clock."""
         if self._status.report():
-            self._status.warn_of_full_speed(self._commands.connected)
             resume()
 
 
