@@ -9,6 +9,10 @@ COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # set in the container image
 RVIZ_LOG = "ROBOCOP_RVIZ_LOG"  # environment variable: file for what RViz prints; without it RViz writes to the terminal
 ACTION = "robocop_goto_as"  # fixed by the handout
 ACTION_TYPE = f"{PACKAGE}/GoToPositionAction"
+# Frames, of REP-105 and the robots' URDFs; of several robots, all but the first two get the robot's name as a prefix.
+WORLD_FRAME, MAP_FRAME = "world", "map"  # the world is that of ground truth; it coincides with map
+ODOM_FRAME, FOOTPRINT_FRAME = "odom", "base_footprint"
+SCAN_FRAME, IMU_FRAME = "base_scan", "imu_link"
 
 
 def robocop() -> str:

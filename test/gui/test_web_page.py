@@ -61,7 +61,7 @@ UPRIGHT, TURNED, DENSITY = (393, 727), (802, 293), 2.75  # sizes [pixel] of a Pi
 
 
 @pytest.mark.slow
-def test_the_room_fills_the_scene_of_a_phone_however_it_is_turned_and_a_tap_beside_the_room_sends_nothing(web, browser):
+def test_the_room_fills_the_scene_of_a_phone_however_it_is_turned(web, browser):
     clicks = Recorder(web.ros, "/robocop_web", "/move_base_simple/goal")
     web.place(*SPAWN)
     tab = Tab(browser, web.url, UPRIGHT, touch=True, density=DENSITY)
@@ -82,9 +82,6 @@ def test_the_room_fills_the_scene_of_a_phone_however_it_is_turned_and_a_tap_besi
         corners = tab.pixels(corners_of(()))
         assert tab.covered(corners) == []
         assert max(np.ptp(corners, axis=0) / tab.scene()) > 0.9
-        wait_for(lambda: "outside" not in tab.text(), "the taps are answered")
-        tab.tap(4.0, tab.scene()[1] - 4.0)
-        tab.wait_for_text("outside of the walls, nothing was sent")
     assert all(max(abs(x), abs(y)) < 2.5 for x, y in sent())
     assert tab.errors == []
     tab.close()

@@ -126,7 +126,6 @@ def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gaze
         "deleted": True,
         "deleted a robot": False,
         "light": True,
-        "refused": [],
         "set": True,
         "paused": True,
         "moved by itself": True,

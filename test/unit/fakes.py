@@ -6,12 +6,12 @@ from typing import AbstractSet, Callable, List, Set, Tuple
 from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.robot.model import RobotSpec
-from aro_robocop_goto_as.simulation.agenda import Due, Subscriptions
+from aro_robocop_goto_as.simulation.agenda import Due
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.jobs import Queue, WallClock
-from aro_robocop_goto_as.simulation.lockstep import ControllerId, TickReport
+from aro_robocop_goto_as.simulation.lockstep import ControllerId
 from aro_robocop_goto_as.simulation.params import SimParams
-from aro_robocop_goto_as.simulation.running import Outputs, RunningSimulator
+from aro_robocop_goto_as.simulation.running import RunningSimulator
 from aro_robocop_goto_as.simulation.simulator import Change
 
 
@@ -48,7 +48,7 @@ class FakeClock(WallClock):
         return jobs.get_nowait()
 
 
-class Owner(Outputs):
+class Owner:
     """Runs one robot in the empty world without ROS, by a fake clock, and notes what is published."""
 
     def __init__(self, end: float = 1.0, **params: object) -> None:
@@ -68,26 +68,18 @@ class Owner(Outputs):
         self.clock.at(delay, lambda: self.running.jobs.post(job))
 
     def run(self) -> None:
-        self.running.run(self)
+        for now in self.running.rounds(lambda: {"odom": [0]}, self._connected):
+            if now.due is not None:
+                self.seen.append((self.simulator.stamp_ns, now.due))
+                if now.due.control:
+                    self.on_tick(self.simulator.stamp_ns)
+            if now.changes and now.changes != set(Change):  # which are published at the start
+                self.events.append(now.changes)
+            if now.clock:
+                self.events.append("clock repeated")
+            if now.tick is not None:
+                self.events += [("late", now.tick.late)] if now.tick.late else []
+                self.events += [("gone", controller) for controller in now.tick.gone]
 
-    def subscriptions(self) -> Subscriptions:
-        return {"odom": [0]}
-
-    def connected(self) -> AbstractSet[ControllerId]:
+    def _connected(self) -> AbstractSet[ControllerId]:
         return {ControllerId(0, node) for node in self.nodes}
-
-    def publish(self, due: Due, more: bool) -> None:
-        self.seen.append((self.simulator.stamp_ns, due))
-        if due.control:
-            self.on_tick(self.simulator.stamp_ns)
-
-    def publish_changes(self, changes: AbstractSet[Change]) -> None:
-        if changes != set(Change):  # which are published at the start
-            self.events.append(changes)
-
-    def publish_clock(self) -> None:
-        self.events.append("clock repeated")
-
-    def tick_ended(self, report: TickReport) -> None:
-        self.events += [("late", report.late)] if report.late else []
-        self.events += [("gone", controller) for controller in report.gone]

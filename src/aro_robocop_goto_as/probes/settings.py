@@ -1,7 +1,6 @@
 """Whether a ROS system can run with the master, addresses and log folder that the environment names."""
 
 import contextlib
-import errno
 import os
 import socket
 import tempfile
@@ -14,7 +13,6 @@ from . import master
 
 MASTER = "ROS_MASTER_URI"
 LOG_FOLDERS = ("ROS_LOG_DIR", "ROS_HOME")  # ROS takes the first one that is set
-LOG_SPACE = 100_000  # [byte] that a system writes at its start
 OWN_NAMES = (
     "ROS_HOSTNAME",
     "ROS_IP",
@@ -73,11 +71,9 @@ def _log_problem() -> str:
     while not os.path.exists(tried):
         tried = os.path.dirname(os.path.abspath(tried))
     try:
-        with tempfile.TemporaryFile(dir=tried) as file:
-            file.write(bytes(LOG_SPACE))
-            file.flush()
+        tempfile.TemporaryFile(dir=tried).close()
     except OSError as error:
-        remedy = "make room on its disk" if error.errno == errno.ENOSPC else f"set {LOG_FOLDERS[1]} to one that can"
+        remedy = f"set {LOG_FOLDERS[1]} to one that can"
         return f"the folder of ROS' logs, {chosen}={wanted}, can't be written ({error.strerror}); {remedy}"
     return ""
 

@@ -20,13 +20,12 @@ def occupancy_of(
     circles: np.ndarray,
     starts: Sequence[Pose2D],
     resolution: float,
-    max_cells: int = MAX_CELLS,
 ) -> Occupancy:
     """The occupancy grid of outlines: cells they touch are occupied, cells that can be reached from a start are free.
 
     All other cells are unknown. The first start is in the grid, the others where they are within BOUNDS_RADIUS of it.
     segments: (m, [start, end], [x, y]) [m]; circles: (k, [x, y, radius]) [m]
-    resolution: side length of a cell [m]; larger where the grid would have more than max_cells per side
+    resolution: side length of a cell [m]; larger where the grid would have more than MAX_CELLS per side
     """
     segments = np.concatenate([segments, *(_polygon(circle) for circle in circles)])
     seeds = np.array([(start.x, start.y) for start in starts])
@@ -34,7 +33,7 @@ def occupancy_of(
     bounded = segments[np.abs(segments - seeds[0]).max(axis=(1, 2)) < BOUNDS_RADIUS].reshape(-1, 2)
     points = np.concatenate([bounded, seeds])
     low, high = points.min(axis=0) - MARGIN, points.max(axis=0) + MARGIN
-    resolution = max(resolution, float((high - low).max()) / max_cells)
+    resolution = max(resolution, float((high - low).max()) / MAX_CELLS)
     columns, rows = (math.ceil(length / resolution) for length in high - low)
     occupied = np.zeros((rows, columns), dtype=bool)
     for cells in _touched((segments - low) / resolution, columns, rows):

@@ -3,15 +3,12 @@
 import math
 from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 
-import numpy as np
 from geometry_msgs.msg import Point, Quaternion, Vector3
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ..errors import FrameError
 from ..geometry import Pose3D, compose3
-from ..shapes import Box, Cylinder, Geometry, Mesh, Sphere
 from ..web.scene import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Placed, Shape, color_of
-from ..world.model import Obstacle
 from .convert import from_quaternion
 
 KINDS = {
@@ -51,24 +48,6 @@ def to_shape(marker: Marker) -> Optional[Shape]:
 def obstacles(group: Group) -> List[Placed]:
     """Those of the shapes that are the simulator's markers for obstacles, not for robots."""
     return [placed for key, placed in group.items() if isinstance(key, tuple) and key[0] == "world"]
-
-
-def solids(group: Group) -> List[Obstacle]:
-    """The same obstacles as the world's model has them; none has a name."""
-    return [Obstacle("", pose, _geometry(shape)) for shape, pose in obstacles(group)]
-
-
-def _geometry(shape: Shape) -> Geometry:
-    x, y, z = shape.size
-    if shape.kind == BOX:
-        return Box((x, y, z))
-    if shape.kind == CYLINDER:
-        return Cylinder(x / 2.0, z)
-    if shape.kind == SPHERE:
-        return Sphere(x / 2.0)
-    if shape.kind == MESH:
-        return Mesh(np.array(shape.points).reshape(-1, 3, 3), "")
-    raise ValueError(f"no obstacle of the kind {shape.kind!r}")
 
 
 class MarkerStore:

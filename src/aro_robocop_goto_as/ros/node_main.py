@@ -2,7 +2,6 @@
 
 import contextlib
 import os
-import resource
 import signal
 import sys
 import threading
@@ -24,8 +23,6 @@ usage: rosrun aro_robocop_goto_as {1} {2}
 Names and meanings: docs/interfaces.md. ./robocop run and roslaunch start it with everything else."""
 MASTER_PERIOD = 0.5  # [s, wall] between two looks for a ROS master
 MASTER_WATCH_PERIOD = 2.0  # [s, wall] between two looks whether it is still there
-ROSOUT_TOPICS = "/rosout_disable_topics_generation"
-MAX_DESCRIPTORS = 65_536  # files; in containers the system may grant a billion, over which some libraries loop
 T = TypeVar("T")
 
 
@@ -89,13 +86,8 @@ def node(name: str, **options: Any) -> Iterator[None]:
         os.environ["ROS_LOG_DIR"] = os.path.dirname(log)
     for number in ending_signals():
         signal.signal(number, _shut_down)
-    raise_descriptor_limit()
     try:
         rospy.init_node(name, disable_signals=True, **options)
-        # While this is not set, rospy asks the master for it at each line that it logs. When a node that lost its name
-        # logs, the master takes this query for a new registration and ends the other node.
-        if not rospy.has_param(ROSOUT_TOPICS):
-            rospy.set_param(ROSOUT_TOPICS, False)  # as it is when not set
         yield
     except RobocopError as error:
         rospy.logfatal("%s: %s", error.code, error)
@@ -127,18 +119,6 @@ def end_with_master() -> None:
 def load_params(cls: Type[T]) -> T:
     """All private parameters as `cls`; ParameterError names the node and each key that is wrong."""
     return from_dict(cls, rospy.get_param("~", {}), f"parameters of {rospy.get_name()}")
-
-
-def raise_descriptor_limit() -> None:
-    """Allow this process as many file descriptors as the system grants, up to MAX_DESCRIPTORS.
-
-    Each subscriber of each topic takes two. The usual limit of 1024 exists for programs that call select(). It is too
-    low for a recorder, RViz and controllers of 50 robots, and once it was reached, rospy accepts no more subscribers.
-    """
-    now, most = resource.getrlimit(resource.RLIMIT_NOFILE)
-    granted = MAX_DESCRIPTORS if most == resource.RLIM_INFINITY else min(most, MAX_DESCRIPTORS)
-    if now < granted:
-        resource.setrlimit(resource.RLIMIT_NOFILE, (granted, most))
 
 
 def _shut_down(number: int, _: object) -> None:

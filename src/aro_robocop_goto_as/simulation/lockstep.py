@@ -39,11 +39,11 @@ class TickReport:
 class _Controller:
     last_answered: int  # tick
     answers_ticks: bool = False
-    in_a_row: int = 0  # ticks that it has answered without a gap
+    in_a_row: int = 0  # ticks that it has answered since it was last given up
 
     def note(self, tick: int) -> None:
         if tick > self.last_answered:
-            self.in_a_row = self.in_a_row + 1 if tick == self.last_answered + 1 else 1
+            self.in_a_row += 1
             self.last_answered = tick
 
     @property

@@ -7,9 +7,9 @@ key is simply left out.
 """
 
 from dataclasses import dataclass
-from typing import Any, List, Mapping, Optional
+from typing import Any, List, Optional
 
-from ..param_loading import MODELS_OWN, frame_problems, from_dict, group, parameter, positive
+from ..param_loading import MODELS_OWN, from_dict, group, parameter, positive
 from ..physics.engine import EngineParams
 from ..robot.base_controller import LimitParams
 from ..robot.model_names import DEFAULT_MODEL
@@ -84,20 +84,6 @@ class LockstepParams:
 
 
 @dataclass(frozen=True)
-class FrameNames:
-    """TF frames; of several robots, odom, base, scan and imu get the robot's name as a prefix."""
-
-    world_frame: str = parameter("world", about="of ground truth; coincides with map")
-    map_frame: str = parameter("map", about="REP-105")
-    odom_frame: str = parameter("odom", about="REP-105")
-    base_frame: str = parameter(
-        "base_footprint", about="REP-105's base_link, projected onto the floor; child of odom_frame"
-    )
-    scan_frame: str = parameter("base_scan", about="of the laser scanner")
-    imu_frame: str = parameter("imu_link", about="of the IMU")
-
-
-@dataclass(frozen=True)
 class TopicParams:
     """Which optional topics, transforms and services the node offers, and what they carry."""
 
@@ -142,7 +128,6 @@ class SimParams:
     lockstep: LockstepParams = group(LockstepParams)
     limits: LimitParams = group(LimitParams)
     sensors: SensorParams = group(SensorParams)
-    frames: FrameNames = group(FrameNames)
     topics: TopicParams = group(TopicParams)
 
     @classmethod
@@ -152,7 +137,7 @@ class SimParams:
 
     def conflicts(self) -> List[str]:
         """Combinations of values that are impossible, in words; empty when there are none."""
-        return self._rate_conflicts() + self._frame_conflicts() + self._range_conflicts()
+        return self._rate_conflicts() + self._range_conflicts()
 
     def _rate_conflicts(self) -> List[str]:
         physics, rates = self.rates.physics_rate, {**vars(self.rates), **self.sensors.rates()}
@@ -169,16 +154,6 @@ class SimParams:
                 f"control_rate: {self.rates.control_rate} Hz does not divide clock_rate {self.rates.clock_rate} Hz; in "
                 "lockstep, controllers wake up at clock ticks"
             )
-        return problems
-
-    def _frame_conflicts(self) -> List[str]:
-        problems = []
-        frames: Mapping[str, str] = vars(self.frames)
-        for name, frame in frames.items():
-            problems += frame_problems(name, frame)
-            count = list(frames.values()).count(frame)
-            if frame and count > 1:
-                problems.append(f"{name}: expected six different frames, got {frame!r} {count} times")
         return problems
 
     def _range_conflicts(self) -> List[str]:

@@ -1,46 +1,29 @@
 """A simulator that runs: the loop around its steps, with the wall clock, controllers and the jobs of other threads."""
 
-from typing import AbstractSet, Callable, Optional
+from typing import AbstractSet, Callable, Iterator, NamedTuple, Optional
 
 from .agenda import Due, Subscriptions
 from .controllers import Controllers
 from .jobs import Jobs, WallClock
-from .lockstep import ControllerId, TickReport
+from .lockstep import Connected, TickReport
 from .simulator import Change, Simulator
 from .time_control import TimeControl
 
 MAX_SLEEP = 0.05  # [s, wall] a sleep during which jobs may wait; waiting for jobs costs four times the processor time
 
 
-class Outputs:
-    """What a running simulator publishes to, and asks who listens and commands; called by the thread of the loop."""
+class Round(NamedTuple):
+    """What the owner of a running simulator is to publish now; often nothing, while time stands still."""
 
-    def subscriptions(self) -> Subscriptions:
-        """Topic of a sensor -> the robots for which somebody subscribes to it; asked for at clock ticks."""
-        return {}
-
-    def connected(self) -> AbstractSet[ControllerId]:
-        """The nodes that may command a robot; asked for in lockstep."""
-        return frozenset()
-
-    def publish(self, due: Due, more: bool) -> None:
-        """Publish what is due on this step; `more`: the next step's messages follow at once."""
-
-    def publish_changes(self, changes: AbstractSet[Change]) -> None:
-        """Publish again what has changed other than by a step; at the start this is everything."""
-
-    def publish_clock(self) -> None:
-        """Publish the time again at which the simulation stands still, for nodes that have started meanwhile."""
-
-    def tick_ended(self, report: TickReport) -> None:
-        """In lockstep, a control tick has ended."""
-
-    def report(self) -> None:
-        """Publish what is due by the wall clock; called often."""
+    due: Optional[Due] = None  # of the newest step
+    more: bool = False  # the next step's messages follow at once
+    changes: AbstractSet[Change] = frozenset()  # other than by a step, to be published again; at the start everything
+    clock: bool = False  # publish the time again at which the simulation stands, for nodes that have started meanwhile
+    tick: Optional[TickReport] = None  # in lockstep, how the control tick has ended
 
 
 class RunningSimulator:
-    """The thread that calls run() owns the simulator: other threads only post jobs, which it runs between two steps."""
+    """Its owner's thread iterates over rounds(); other threads only post jobs, which are run between two steps."""
 
     def __init__(
         self, simulator: Simulator, clock: Optional[WallClock] = None, stopped: Callable[[], bool] = lambda: False
@@ -57,60 +40,57 @@ class RunningSimulator:
         self.time_control.set_paused(paused, self.simulator.steps)
         self.simulator.changes.add(Change.PAUSED)
 
-    def run(self, outputs: Outputs) -> None:
-        """Simulate until stopped: clock ticks wait for the wall clock, lockstep control ticks for the controllers."""
+    def rounds(self, subscriptions: Callable[[], Subscriptions], connected: Connected) -> Iterator[Round]:
+        """Simulate until stopped: clock ticks wait for the wall clock, lockstep control ticks for the controllers.
+
+        subscriptions: topic of a sensor -> the robots for which somebody subscribes to it; asked for at clock ticks
+        connected: the nodes that may command a robot; asked for in lockstep
+        """
         simulator, time, controllers = self.simulator, self.time_control, self.controllers
         time.pacer.restart(simulator.steps)
         simulator.changes = set(Change)
-        self._pace(outputs)
-        subscriptions = outputs.subscriptions()
+        yield from self._pace()
+        subscribed = subscriptions()
         while not self._stopped():
-            due = simulator.advance(subscriptions, time.steps_left(simulator.steps))
+            due = simulator.advance(subscribed, time.steps_left(simulator.steps))
             if due is not None:
-                outputs.publish(due, time.as_fast_as_possible and not due.control)
+                yield Round(due, more=time.as_fast_as_possible and not due.control)
                 if due.control and controllers.in_lockstep:
-                    controllers.begin_tick(outputs.connected)
-                    self._hold(lambda: controllers.hold_time(outputs.connected), outputs)
-                    outputs.tick_ended(controllers.end_tick())
+                    controllers.begin_tick(connected)
+                    yield from self._hold(lambda: controllers.hold_time(connected))
+                    yield Round(tick=controllers.end_tick())
             if time.end_span(simulator.steps) or (due is not None and due.clock):
-                self._pace(outputs)
-                outputs.report()
-                subscriptions = outputs.subscriptions()
+                yield from self._pace()
+                subscribed = subscriptions()
 
-    def _pace(self, outputs: Outputs) -> None:
+    def _pace(self) -> Iterator[Round]:
         """Run the jobs that have come, and hold simulated time until the wall clock has reached it."""
         time, simulator = self.time_control, self.simulator
-        self._run_jobs(outputs)
+        self.jobs.run_queued()
+        yield self._changed()
         wait = time.hold_time(simulator.steps)
         if 0.0 < wait < MAX_SLEEP:  # jobs that come meanwhile take effect from the next step on, as if they ran at once
             self._clock.sleep(wait)
             time.pacer.waited(wait)
-            self._run_jobs(outputs)
+            self.jobs.run_queued()
+            yield self._changed()
             wait = time.hold_time(simulator.steps)
         if wait > 0.0:
-            self._hold(lambda: time.hold_time(simulator.steps), outputs)
+            yield from self._hold(lambda: time.hold_time(simulator.steps))
 
-    def _run_jobs(self, outputs: Outputs) -> None:
-        self.jobs.run_queued()
-        self._publish_changes(outputs)
+    def _changed(self, clock: bool = False) -> Round:
+        """A round without a step."""
+        changes, self.simulator.changes = self.simulator.changes, set()
+        if Change.RESET in changes:
+            self.time_control.pacer.restart(self.simulator.steps)
+        return Round(changes=changes, clock=clock)
 
-    def _publish_changes(self, outputs: Outputs) -> None:
-        changes = self.simulator.changes
-        if changes:  # there are none in nearly all rounds of the loop
-            self.simulator.changes = set()
-            if Change.RESET in changes:
-                self.time_control.pacer.restart(self.simulator.steps)
-            outputs.publish_changes(changes)
-
-    def _hold(self, hold: Callable[[], float], outputs: Outputs) -> None:
+    def _hold(self, hold: Callable[[], float]) -> Iterator[Round]:
         """Run the jobs of other threads for as long as `hold` says that simulated time has to wait [s, wall]."""
         pacer = self.time_control.pacer
         started, wait = pacer.now(), hold()
         while wait > 0.0 and not self._stopped():
             self.jobs.run_next(wait)
-            self._publish_changes(outputs)
-            if self.time_control.repetition_due():
-                outputs.publish_clock()
-            outputs.report()
+            yield self._changed(self.time_control.repetition_due())
             wait = hold()
         pacer.waited(pacer.now() - started)

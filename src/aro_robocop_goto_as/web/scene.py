@@ -136,10 +136,6 @@ class PageScene:
         """Return whether anything of the group is shown."""
         return bool(self._groups.get(group))
 
-    def shapes(self, group: str) -> Group:
-        """What a group shows, in the fixed frame; any thread may ask."""
-        return {key: (drawn.shape, drawn.pose) for key, drawn in list(self._groups.get(group, {}).items())}
-
     def _draw(self, name: str, shape: Shape, pose: Pose3D) -> Any:
         where = {"position": pose.position, "wxyz": _wxyz(pose)}
         if shape.kind == BODY:

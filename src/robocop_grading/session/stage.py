@@ -12,6 +12,7 @@ from tf2_msgs.msg import TFMessage
 
 from aro_robocop_goto_as.geometry import NANOSECONDS, STANDSTILL, Pose2D, Twist2D, compose, inverse
 from aro_robocop_goto_as.goto.obstacle_ahead import beams_ahead
+from aro_robocop_goto_as.names import IMU_FRAME, MAP_FRAME, SCAN_FRAME, WORLD_FRAME
 from aro_robocop_goto_as.robot.catalog import load_model
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.ros import convert
@@ -60,7 +61,7 @@ class Stage:
         self.odd_scan = False
         lidar = self.sim.sensors.lidar.profile
         self._ahead = beams_ahead(lidar.samples, lidar.angle_min, lidar.increment, AHEAD)
-        self.bag = ScenarioBag(self.sim, PARAMS.frames.world_frame)
+        self.bag = ScenarioBag(self.sim, WORLD_FRAME)
         self.clock_ns = 0  # [ns] as on /clock
         self._site = ORIGIN  # world_from_odom at the scenario's start
         self.node: Optional[Node] = None  # that is graded
@@ -161,21 +162,21 @@ class Stage:
         self.bag.write("/tf_static", self._static_frames(self._site))
 
     def _static_frames(self, world_from_map: Pose2D) -> TFMessage:
-        frames, map_from_odom = PARAMS.frames, compose(inverse(world_from_map), self.sim.map_from_odom())
+        map_from_odom = compose(inverse(world_from_map), self.sim.map_from_odom())
         return TFMessage(
             [
-                convert.to_transform(frames.world_frame, frames.map_frame, world_from_map, self.stamp),
-                convert.to_transform(frames.map_frame, self.robot.odom, map_from_odom, self.stamp),
+                convert.to_transform(WORLD_FRAME, MAP_FRAME, world_from_map, self.stamp),
+                convert.to_transform(MAP_FRAME, self.robot.odom, map_from_odom, self.stamp),
             ]
         )
 
     def _links(self) -> List[TransformStamped]:
         """The transforms that robot_state_publisher sends in the lab for the robot's links, except the wheels."""
-        frames, model = PARAMS.frames, self.sim.robots[0].model
+        model = self.sim.robots[0].model
         return [
             convert.to_transform_3d(self.robot.footprint, BASE_LINK, model.footprint_from_base, self.stamp),
-            convert.to_transform_3d(BASE_LINK, frames.scan_frame, model.base_from_scan, self.stamp),
-            convert.to_transform_3d(BASE_LINK, frames.imu_frame, model.base_from_imu, self.stamp),
+            convert.to_transform_3d(BASE_LINK, SCAN_FRAME, model.base_from_scan, self.stamp),
+            convert.to_transform_3d(BASE_LINK, IMU_FRAME, model.base_from_imu, self.stamp),
         ]
 
     def odom_from_footprint(self) -> Pose2D:

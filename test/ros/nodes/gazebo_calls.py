@@ -9,8 +9,6 @@ from gazebo_msgs.srv import DeleteLight, DeleteModel, GetModelState, GetWorldPro
 from geometry_msgs.msg import Point, Pose, Twist
 from std_srvs.srv import Empty
 
-from aro_robocop_goto_as.ros.sim.gazebo_services import REFUSED
-
 ROBOT = "turtlebot3_burger"
 BOX = """<sdf version="1.6"><model name="box"><link name="link"><collision name="collision"><geometry>
 <box><size>0.5 0.5 0.5</size></box></geometry></collision></link></model></sdf>"""
@@ -64,8 +62,6 @@ def main():
     topic.publish(ModelState("table", Pose(position=Point(-2.0, 1.0, 0.0)), Twist(), "world"))
     while position("table")[:3] != [True, -2.0, 1.0]:
         rospy.rostime.wallsleep(0.01)
-    refused = {name: call(name, kind, kind._request_class()) for name, (kind, _) in REFUSED.items()}
-    answers["refused"] = [name for name, answer in refused.items() if answer.success or not answer.status_message]
     answers["deleted"] = call("delete_model", DeleteModel, "table").success
     answers["deleted a robot"] = call("delete_model", DeleteModel, ROBOT).success
     answers["unknown"] = position("table")

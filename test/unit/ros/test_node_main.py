@@ -1,11 +1,9 @@
-"""The command line of a node, and its limits."""
+"""The command line of a node."""
 
-import resource
 import sys
 
 import pytest
 
-from aro_robocop_goto_as.ros import node_main
 from aro_robocop_goto_as.ros.node_main import answer_help
 
 
@@ -16,12 +14,3 @@ def test_unknown_option_is_refused_and_arguments_of_ros_are_not(monkeypatch):
     assert refused.value.code == "robocop_sim.py: there is no option --hlp; there is: --help"
     sys.argv.pop()
     answer_help("The simulator.")
-
-
-@pytest.mark.parametrize("granted, wanted", [(4096, 4096), (2**30, 65_536), (resource.RLIM_INFINITY, 65_536)])
-def test_node_may_open_as_many_descriptors_as_the_system_allows(monkeypatch, granted, wanted):
-    limits = []
-    monkeypatch.setattr(resource, "getrlimit", lambda _: (1024, granted))
-    monkeypatch.setattr(resource, "setrlimit", lambda *given: limits.append(given))
-    node_main.raise_descriptor_limit()
-    assert limits == [(resource.RLIMIT_NOFILE, (wanted, granted))]

@@ -5,13 +5,12 @@ import math
 import sys
 import threading
 import time
-from typing import Any, Callable, Optional
+from typing import Any, Callable
 
 import actionlib
 import rospy
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
-from visualization_msgs.msg import MarkerArray
 
 from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, SimStatus
 
@@ -19,11 +18,9 @@ from ...errors import FrameError
 from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, position_text, prefixed, robocop
 from ...probes import master
 from ...process import signals
-from ...raycast.enclosure import is_outside
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
 from ..client.goal_states import ending
-from ..marker_shapes import MarkerStore, solids
 from ..waiting import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT, complain, tell
 
@@ -137,7 +134,6 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
         if rospy.get_rostime() == started:
             complain(standstill())
         return NOT_REACHED
-    _watch_walls(position, transformer, lambda: odometry.message)
     given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
     in_odom = f", {position_text(position.x, position.y, odom)}" if pose.header.frame_id != odom else ""
     tell(f"goal {given}{in_odom}")
@@ -145,25 +141,6 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
     if simulator.message is not None and args.robot.strip("/") in simulator.message.slipped:
         complain(SLIPPED)
     return status
-
-
-def _watch_walls(goal: Point, transformer: GoalTransformer, odom: Callable[[], Optional[Odometry]]) -> None:
-    """Warn of a goal outside the walls, once the simulator, if there is one, has published its world."""
-
-    seen = threading.Event()  # the whole world comes first, then what moves
-
-    def on_world(message: MarkerArray) -> None:
-        here, markers = odom(), MarkerStore()
-        if seen.is_set() or here is None:
-            return
-        seen.set()
-        markers.apply(message)
-        robot = here.pose.pose.position
-        walls = solids(markers.placed(transformer.pose_of))
-        if is_outside((goal.x, goal.y), (robot.x, robot.y), walls):
-            complain("the goal is outside of the walls of the world; the robot drives until one is in its way")
-
-    rospy.Subscriber(absolute(SIMULATOR, "world"), MarkerArray, on_world)
 
 
 def _wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float, ended: Callable[[], bool]) -> str:

@@ -11,7 +11,7 @@ from geometry_msgs.msg import Point, PointStamped, PoseStamped
 from nav_msgs.msg import Odometry
 
 from ...errors import FrameError
-from ...geometry import Pose2D, Pose3D, compose
+from ...geometry import Pose2D, compose
 from ...suggestions import did_you_mean
 from .. import convert
 from ..waiting import wait_until
@@ -62,16 +62,6 @@ class GoalTransformer:
             raise FrameError(f"no transform from {frame!r} to {self.goal_frame!r} {within}") from error
         convert.require_near(x=position.x, y=position.y, z=position.z)
         return position
-
-    def pose_of(self, frame: str) -> Optional[Pose3D]:
-        """The newest pose of a frame in goal_frame; None while TF does not connect them."""
-        try:
-            found = self.buffer.lookup_transform(self.goal_frame, frame, rospy.Time(0)).transform
-        except tf2_ros.TransformException:
-            return None
-        return Pose3D(
-            (found.translation.x, found.translation.y, found.translation.z), convert.from_quaternion(found.rotation)
-        )
 
     def _transform(self, point: Point, frame: str, stamp: rospy.Time) -> Point:
         def connects(time: rospy.Time) -> bool:

@@ -116,7 +116,6 @@ class Bridge:
         with self.sending:
             self.where = where
             self.feedback = None
-            self.client.stop_tracking_goal()  # so that an earlier goal's late end is not taken for this one's
             self.has_ended.clear()
             self.client.send_goal(GoToPositionGoal(position), done_cb=self.on_done, feedback_cb=self.on_feedback)
         rospy.loginfo(

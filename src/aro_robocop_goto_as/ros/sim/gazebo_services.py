@@ -1,6 +1,5 @@
 """Gazebo's services that lab code calls: /gazebo/pause_physics, get_model_state, set_model_state, ...
 
-All others answer with success false and the reason, so that a client that waits for one does not wait forever.
 A single robot has its model's name, as with Gazebo's spawn_model; several robots have their own names.
 """
 
@@ -22,21 +21,6 @@ from .gazebo_topics import State, models, raised, relative, robot_names, state_o
 from .services import REFUSALS, Offer, SimulatorServices, serve
 
 Fields = Dict[str, Any]  # of a response
-REFUSED: Dict[str, Tuple[Any, str]] = {  # service: its type, what its client can do instead
-    "apply_body_wrench": (srv.ApplyBodyWrench, "only /cmd_vel moves a robot"),
-    "apply_joint_effort": (srv.ApplyJointEffort, "only /cmd_vel moves a robot"),
-    "get_joint_properties": (srv.GetJointProperties, "the wheels' angles are on joint_states"),
-    "get_link_properties": (srv.GetLinkProperties, "a robot's links are in robot_description"),
-    "get_link_state": (srv.GetLinkState, "/gazebo/get_model_state has the pose of a whole model"),
-    "get_model_properties": (srv.GetModelProperties, "a robot's links and joints are in robot_description"),
-    "get_physics_properties": (srv.GetPhysicsProperties, "the parameters of /robocop_sim have them"),
-    "set_joint_properties": (srv.SetJointProperties, "joints are as in the robot's URDF"),
-    "set_link_properties": (srv.SetLinkProperties, "links are as in the robot's URDF and the world's file"),
-    "set_link_state": (srv.SetLinkState, "/gazebo/set_model_state moves a whole model"),
-    "set_model_configuration": (srv.SetModelConfiguration, "wheels turn as the robot drives"),
-    "set_physics_properties": (srv.SetPhysicsProperties, "real_time_factor of /robocop_sim can be changed"),
-    "spawn_urdf_model": (srv.SpawnModel, "/gazebo/spawn_sdf_model spawns models in SDF"),
-}
 
 
 class GazeboServices:
@@ -71,8 +55,6 @@ class GazeboServices:
         serve("/gazebo/spawn_sdf_model", srv.SpawnModel, self._spawn, "status_message", "SpawnModel: ", offer)
         serve("/gazebo/delete_model", srv.DeleteModel, self._delete, "status_message", "DeleteModel: ", offer)
         offer("/gazebo/delete_light", srv.DeleteLight, _delete_light)
-        for name, (kind, reason) in REFUSED.items():
-            offer(f"/gazebo/{name}", kind, _refuser(name, reason))
         if services is not None:
             rospy.Subscriber("/gazebo/set_model_state", ModelState, self._on_model_state, queue_size=10)
 
@@ -153,7 +135,3 @@ class GazeboServices:
 
 def _delete_light(request: Any) -> Tuple[bool, str]:
     return True, f"there is no light {request.light_name!r} to delete: this simulator has none"
-
-
-def _refuser(name: str, reason: str) -> Callable[[Any], Fields]:
-    return lambda _request: {"success": False, "status_message": f"{name} is not offered: {reason}"}

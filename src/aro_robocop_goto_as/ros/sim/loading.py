@@ -8,7 +8,6 @@ import rospy
 
 from ...errors import PlaceError, WorldError
 from ...names import PACKAGE
-from ...raycast.enclosure import is_outside
 from ...raycast.free_places import occupant
 from ...robot.catalog import load_model
 from ...simulation.factory import make_simulator, robots_from
@@ -79,15 +78,6 @@ def _log(p: SimParams, world: World, simulator: Simulator) -> None:
             simulator.require_room(first)
         except PlaceError as error:
             rospy.logwarn("the robot starts where it has no room: %s", error)
-        if world.has_spawn and is_outside((first.x, first.y), (world.spawn.x, world.spawn.y), world.obstacles):
-            rospy.logwarn(
-                "the robot starts at (%g, %g), outside of the walls of world %s; without spawn it starts at (%g, %g)",
-                first.x,
-                first.y,
-                world.name,
-                world.spawn.x,
-                world.spawn.y,
-            )
     scan = p.sensors.lidar
     given = scan.given()
     if given:

@@ -7,10 +7,9 @@ import rospy
 
 from ...errors import ParameterError
 from ...names import SIMULATOR
-from ...simulation.agenda import Due, Subscriptions
-from ...simulation.lockstep import ControllerId, TickReport
+from ...simulation.agenda import Due
 from ...simulation.params import SimParams, TopicParams
-from ...simulation.running import Outputs, RunningSimulator
+from ...simulation.running import RunningSimulator
 from ...simulation.simulator import Change, Simulator
 from ..node_main import answer_help, end_with_master, load_params, node
 from ..publishing.publisher import resume
@@ -22,7 +21,7 @@ from .step_topics import StepTopics
 from .world_topics import WorldTopics
 
 
-class SimNode(Outputs):
+class SimNode:
     """One thread runs the loop and publishes; rospy's threads only post jobs to it."""
 
     def __init__(self, simulator: Simulator) -> None:
@@ -52,19 +51,19 @@ class SimNode(Outputs):
 
     def run(self) -> None:
         """Simulate until shutdown."""
-        self._running.run(self)
+        for now in self._running.rounds(self._topics.subscriptions, self._commands.connected):
+            if now.due is not None:
+                self._publish(now.due, now.more)
+                continue
+            self._publish_changes(now.changes)
+            if now.clock:
+                self._topics.publish_clock()
+            if now.tick is not None:
+                self._status.warn_of(now.tick)
+            if self._status.report():
+                resume()
 
-    # -- what the loop calls --
-
-    def subscriptions(self) -> Subscriptions:
-        """Topic of a sensor -> the robots for which somebody subscribes to it."""
-        return self._topics.subscriptions()
-
-    def connected(self) -> AbstractSet[ControllerId]:
-        """The nodes that are connected to a robot's topics."""
-        return self._commands.connected()
-
-    def publish(self, due: Due, more: bool) -> None:
+    def _publish(self, due: Due, more: bool) -> None:
         """Publish what is due on this step, and warn of robots that were placed in contact with something."""
         if due.control and self._simulator.moving:
             self._world.publish_moving()
@@ -76,7 +75,7 @@ class SimNode(Outputs):
             text = "robot %sis placed in contact with an obstacle or another robot, at x %.2f y %.2f"
             rospy.logwarn(text, name and name + " ", pose.x, pose.y)
 
-    def publish_changes(self, changes: AbstractSet[Change]) -> None:
+    def _publish_changes(self, changes: AbstractSet[Change]) -> None:
         """Publish again the topics whose content has changed other than by a step."""
         if Change.FRAMES in changes:
             self._topics.publish_static()
@@ -84,20 +83,6 @@ class SimNode(Outputs):
             self._world.publish()
         if changes & {Change.PAUSED, Change.RESET}:
             self._status.publish()
-
-    def publish_clock(self) -> None:
-        """Repeat the time at which the simulation stands still."""
-        self._topics.publish_clock()
-
-    def tick_ended(self, report: TickReport) -> None:
-        """Log what went wrong in a control tick."""
-        self._status.warn_of(report)
-
-    def report(self) -> None:
-        """Publish what is due by the wall clock."""
-        if self._status.report():
-            self._status.warn_of_full_speed(self._commands.connected)
-            resume()
 
 
 def main() -> None:

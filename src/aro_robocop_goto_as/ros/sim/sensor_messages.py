@@ -15,7 +15,7 @@ from std_msgs.msg import Bool, Header
 from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
-from ...names import prefixed
+from ...names import FOOTPRINT_FRAME, IMU_FRAME, MAP_FRAME, ODOM_FRAME, SCAN_FRAME, WORLD_FRAME, prefixed
 from ...robot.model import CAMERA_FRAME
 from ...sensors.bumper import Bumper
 from ...sensors.camera import Camera
@@ -25,7 +25,6 @@ from ...sensors.lidar import Lidar
 from ...sensors.lidar_profiles import LidarProfile
 from ...sensors.odometry import JointEncoders, WheelOdometry
 from ...sensors.sensor import Sensor
-from ...simulation.params import FrameNames
 from .. import convert
 from ..publishing.packed import PackedMessage, counter
 
@@ -97,11 +96,11 @@ def packed_transforms(transforms: Sequence[Tuple[str, str, Row]]) -> PackedMessa
 class RobotFrames:
     """One robot's row in the sensors' arrays, and its frames, which carry its name as a prefix."""
 
-    def __init__(self, row: int, name: str, frames: FrameNames) -> None:
+    def __init__(self, row: int, name: str) -> None:
         self.row, self._name = row, name
-        self.world, self.map = frames.world_frame, frames.map_frame
-        self.odom, self.footprint = self.of(frames.odom_frame), self.of(frames.base_frame)
-        self.scan, self.imu, self.camera = map(self.of, (frames.scan_frame, frames.imu_frame, CAMERA_FRAME))
+        self.world, self.map = WORLD_FRAME, MAP_FRAME
+        self.odom, self.footprint = self.of(ODOM_FRAME), self.of(FOOTPRINT_FRAME)
+        self.scan, self.imu, self.camera = map(self.of, (SCAN_FRAME, IMU_FRAME, CAMERA_FRAME))
 
     def of(self, name: str) -> str:
         """A frame or topic of this robot."""

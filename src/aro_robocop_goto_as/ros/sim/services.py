@@ -13,7 +13,7 @@ from aro_robocop_goto_as.srv import DeleteModel, MoveModel, Reset, SetPose, Spaw
 
 from ...errors import FrameError, PlaceError, ShutdownError, WorldError
 from ...geometry import Pose2D, Pose3D, compose
-from ...names import prefixed
+from ...names import MAP_FRAME, ODOM_FRAME, WORLD_FRAME, prefixed
 from ...simulation.running import RunningSimulator
 from ...simulation.schedule import stamp_ns
 from ...world.edit import requested_model, with_model, with_model_at, without_model
@@ -55,7 +55,6 @@ class SimulatorServices:
         p = running.simulator.params
         self._running, self._simulator = running, running.simulator
         self._call = running.jobs.call
-        self._frames = p.frames
         self._names: List[str] = [robot.name for robot in running.simulator.robots]
         serve("~pause", Trigger, lambda _: {"message": self._call(lambda: self.set_paused(True))})
         serve("~unpause", Trigger, lambda _: {"message": self._call(lambda: self.set_paused(False))})
@@ -176,12 +175,12 @@ class SimulatorServices:
         return target
 
     def _in_world(self, robot: int, frame: str, pose: Pose2D) -> Pose2D:
-        odom_frame = prefixed(self._names[robot], self._frames.odom_frame)
-        if frame in (self._frames.world_frame, self._frames.map_frame):
+        odom_frame = prefixed(self._names[robot], ODOM_FRAME)
+        if frame in (WORLD_FRAME, MAP_FRAME):
             return pose
         if frame == odom_frame:
             return compose(self._simulator.map_from_odom(robot), pose)
-        known = f"{self._frames.map_frame!r}, {odom_frame!r} or {self._frames.world_frame!r}"
+        known = f"{MAP_FRAME!r}, {odom_frame!r} or {WORLD_FRAME!r}"
         raise FrameError(f"its frame is {frame!r}; expected {known}")
 
 

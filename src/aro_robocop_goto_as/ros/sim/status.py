@@ -10,16 +10,12 @@ from aro_robocop_goto_as.msg import SimStatus
 
 from ...geometry import Pose2D, compose
 from ...names import SIMULATOR, absolute, robocop
-from ...simulation.lockstep import Connected, ControllerId, TickReport
+from ...simulation.lockstep import ControllerId, TickReport
 from ...simulation.running import RunningSimulator
 from ...simulation.simulator import Simulator
 from ...simulation.time_control import FactorReport
 from .. import convert
 from ..publishing.publisher import publisher
-
-# Without lockstep, above this real-time factor, a controller at the lab's 10 Hz has less than 5 ms [wall] for each
-# command. That is CPython's switch interval, for which one of its threads may wait for another one.
-MAX_FREE_FACTOR = 20.0
 
 
 class StatusTopics:
@@ -28,10 +24,8 @@ class StatusTopics:
     def __init__(self, running: RunningSimulator) -> None:
         self._running = running
         self._report = FactorReport(0.0, running.time_control.pacer.factor, 0.0, 0.0)
-        self._reports = 0  # while simulated time ran
-        self._behind: List[float] = []  # the factors reached in those in which the machine was too slow
+        self._has_warned_of_lag = False
         self._drivers: List[ControllerId] = []
-        self._has_warned_of_full_speed = False
         self._slipped: Set[int] = set()  # robots
         self._factor = publisher("~real_time_factor", Float64, latch=True)
         self._status = publisher("~status", SimStatus, latch=True)
@@ -45,52 +39,18 @@ class StatusTopics:
             self._factor.publish(report.reached)
             self._watch_slip()
             self.publish()
-            if not self._running.time_control.paused:
-                self._count(report)
+            self._warn_of_lag(report)
         elif self._running.controllers.lockstep.expected() != self._drivers:
             self.publish()
         return report is not None
 
-    def _count(self, report: FactorReport) -> None:
-        """Warn the first time that the machine is too slow; the summary at the end says how often it was."""
-        self._reports += 1
-        if not report.behind:
+    def _warn_of_lag(self, report: FactorReport) -> None:
+        """Warn the first time that the machine is too slow; ~status and ~real_time_factor have what follows."""
+        if self._has_warned_of_lag or self._running.time_control.paused or not report.behind:
             return
-        self._behind.append(report.reached)
-        if len(self._behind) == 1:
-            text = (
-                "real-time factor %.2f achieved, %.2f requested: this machine is too slow; simulated time runs slower"
-            )
-            text += "" if self._outruns_controllers() else ", results are the same"
-            rospy.logwarn(f"{text}; a summary follows at the end", report.reached, report.asked)
-            rospy.on_shutdown(self._summarize)
-
-    def _summarize(self) -> None:
-        mean, slowest = sum(self._behind) / len(self._behind), min(self._behind)
-        text = "the machine was too slow in %d of %d s: real-time factor %.2f on average then, %.2f at the slowest"
-        rospy.logwarn(text, len(self._behind), self._reports, mean, slowest)
-
-    def _outruns_controllers(self) -> bool:
-        """Return whether simulated time may run too fast for controllers, for which it does not wait."""
-        factor = self._running.time_control.pacer.factor
-        return not (self._running.controllers.in_lockstep or 0.0 < factor <= MAX_FREE_FACTOR)
-
-    def warn_of_full_speed(self, connected: Connected) -> None:
-        """Warn once of controllers that may be too slow for simulated time that does not wait for them."""
-        time_control = self._running.time_control
-        if not self._outruns_controllers() or self._has_warned_of_full_speed or time_control.paused:
-            return
-        nodes = sorted({controller.node for controller in connected()})
-        if nodes:
-            self._has_warned_of_full_speed = True
-            rospy.logwarn(
-                "real_time_factor %g without lockstep: simulated time runs %.0f times as fast as the wall clock, and "
-                "%s %s keep up; use sync:=lockstep, or a real_time_factor such as 10",
-                time_control.pacer.factor,
-                self._report.reached,
-                " and ".join(nodes),
-                "may not" if time_control.pacer.factor else "can't",
-            )
+        self._has_warned_of_lag = True
+        text = "real-time factor %.2f achieved, %.2f requested: this machine is too slow; simulated time runs slower"
+        rospy.logwarn(text, report.reached, report.asked)
 
     def _watch_slip(self) -> None:
         """Note robots whose wheels turned at an obstacle until odometry was off by their radius, and warn once of each.

@@ -12,6 +12,7 @@ from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
 
 from ...geometry import Pose2D
+from ...names import MAP_FRAME, WORLD_FRAME
 from ...robot.model import BASE
 from ...sensors.odometry import ODOM
 from ...simulation.agenda import Due, Subscriptions
@@ -36,7 +37,7 @@ class StepTopics:
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator, self._params = simulator, simulator.params
-        self.robots = [RobotFrames(row, robot.name, self._params.frames) for row, robot in enumerate(simulator.robots)]
+        self.robots = [RobotFrames(row, robot.name) for row, robot in enumerate(simulator.robots)]
         self._sensors = [sensor for sensor in simulator.sensors.by_topic.values() if sensor.rate]
         self.tf = publisher("/tf", TFMessage)
         self.tf_static = publisher("/tf_static", TFMessage, latch=True)
@@ -93,9 +94,9 @@ class StepTopics:
 
     def static_transforms(self) -> List[TransformStamped]:
         """world -> map, each robot's map -> odom where that is static, and frames of sensors that no URDF has."""
-        simulator, frames = self._simulator, self._params.frames
+        simulator = self._simulator
         stamp = convert.to_time(simulator.stamp_ns)
-        transforms = [convert.to_transform(frames.world_frame, frames.map_frame, Pose2D(), stamp)]
+        transforms = [convert.to_transform(WORLD_FRAME, MAP_FRAME, Pose2D(), stamp)]
         for robot in self.robots:
             if self._params.topics.localization == "static":
                 map_from_odom = simulator.map_from_odom(robot.row)

@@ -12,7 +12,7 @@ from rospy.numpy_msg import numpy_msg
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
-from ...names import prefixed
+from ...names import FOOTPRINT_FRAME, MAP_FRAME, WORLD_FRAME, prefixed
 from ...simulation.simulator import Simulator
 from ...world.model import Occupancy
 from .. import convert
@@ -52,9 +52,8 @@ class WorldTopics:
     def __init__(self, simulator: Simulator) -> None:
         """Robots with a name are shown as markers; a lone robot without one by RViz's RobotModel instead."""
         self._simulator = simulator
-        self._frames = simulator.params.frames
         self._robots = [
-            (robot.name, prefixed(robot.name, self._frames.base_frame), radius)
+            (robot.name, prefixed(robot.name, FOOTPRINT_FRAME), radius)
             for robot, radius in zip(simulator.robots, simulator.fleet.radii.tolist())
             if robot.name
         ]
@@ -79,13 +78,13 @@ class WorldTopics:
 
     def _obstacles(self, moving: bool = False) -> List[Marker]:
         simulator = self._simulator
-        return world_markers(simulator.world, self._frames.world_frame, simulator.world_time, moving)
+        return world_markers(simulator.world, WORLD_FRAME, simulator.world_time, moving)
 
     def _publish_map(self) -> None:
         """A stamp of zero would mean that there is no map."""
         stamp = max(convert.to_time(self._simulator.stamp_ns), Time(0, 1))
         is_first = self._grid is None
-        self._grid = to_grid(self._simulator.occupancy(), stamp, self._frames.map_frame)
+        self._grid = to_grid(self._simulator.occupancy(), stamp, MAP_FRAME)
         self._map.publish(self._grid)
         self._metadata.publish(self._grid.info)
         if is_first:

@@ -16,14 +16,13 @@ from aro_robocop_goto_as.msg import (
 from aro_robocop_goto_as.srv import SetPose
 
 from ...names import ACTION, absolute
-from ...raycast.enclosure import is_outside
 from ...web import text
 from ...web.page import floor_point
 from ...web.state import PageState
 from .. import convert, markers
 from ..client.goal_states import STATES, UNFINISHED, result_text
 from ..connected_nodes import publishers_of
-from ..marker_shapes import MarkerStore, solids
+from ..marker_shapes import MarkerStore
 from .part import Context, Inbox, Part
 from .requests import Requests
 
@@ -68,9 +67,6 @@ class GoalsPart(Part):
             return
         place, pose = self._mode.value == PLACE_ROBOT, PoseStamped()
         where = f"{'pose' if place else 'goal'} {text.position(*point)}"
-        if state.pose and is_outside(point, state.pose.position[:2], solids(self.context.scene.shapes("world"))):
-            self.context.state.change(answer=f"{where}: outside of the walls, nothing was sent")
-            return
         pose.header.frame_id = state.root  # with time zero, which means the newest transforms
         pose.pose.position.x, pose.pose.position.y = point
         pose.pose.orientation = convert.to_quaternion(state.pose.on_plane().yaw if place and state.pose else 0.0)

@@ -21,7 +21,7 @@ class System:
 
     def __init__(self, monkeypatch):
         self.topics, self.calls, self.statuses, self.timers, self.transforms = {}, [], [], [], []
-        self.on_cancel = self.on_status = self.wait_for_result = self.stop_tracking_goal = lambda: None
+        self.on_cancel = self.on_status = self.wait_for_result = lambda: None
         self.is_up = True
         self.get_state = lambda: GoalStatus.ACTIVE
         checks = iter([False] * CHECKS)

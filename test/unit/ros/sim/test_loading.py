@@ -21,12 +21,3 @@ def test_what_is_in_the_way_of_the_start_is_told(tmp_path, monkeypatch, name, to
     path = world_file(tmp_path, model(collision(SPHERE)) + f'<model name="{name}"/>')
     loading.load_simulator(from_dict(SimParams, {"world": path, "drive": "kinematic"}, "test"))
     assert warnings[0].startswith(told)
-
-
-@pytest.mark.parametrize("spawn, is_told", [("9 9", True), ("0.5 0", False)])
-def test_start_outside_of_the_walls_is_told(monkeypatch, spawn, is_told):
-    warnings = []
-    monkeypatch.setattr(loading.rospy, "logwarn", lambda text, *values: warnings.append(text % values))
-    loading.load_simulator(from_dict(SimParams, {"world": "stage_1", "spawn": spawn, "drive": "kinematic"}, "test"))
-    outside = "the robot starts at (9, 9), outside of the walls of world stage_1; without spawn it starts at (0, 0)"
-    assert warnings == ([outside] if is_told else [])

@@ -7,25 +7,20 @@ import pytest
 from fakes import FakeClock
 
 from aro_robocop_goto_as.ros.sim import status
-from aro_robocop_goto_as.simulation.lockstep import ControllerId
 from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.simulation.time_control import Pacer
 
 RATE = 240  # [Hz]
 
 
-def warnings_at(
-    monkeypatch: pytest.MonkeyPatch, asked: float, reached: List[float], in_lockstep: bool = False
-) -> List[str]:
+def warnings_at(monkeypatch: pytest.MonkeyPatch, asked: float, reached: List[float]) -> List[str]:
     """The warnings of a simulator that reaches these factors, one a second, while another one is asked for."""
     clock, warnings, running = FakeClock(), [], MagicMock()
     running.time_control.pacer = Pacer(asked, RATE, clock.now)
     running.time_control.paused = False
-    running.controllers.in_lockstep = in_lockstep
     running.simulator.steps = 0
     monkeypatch.setattr(status, "publisher", MagicMock())
     monkeypatch.setattr(status.StatusTopics, "publish", lambda _: None)
-    monkeypatch.setattr(status.rospy, "on_shutdown", MagicMock())
     monkeypatch.setattr(status.rospy, "logwarn", lambda text, *values: warnings.append(text % values))
     topics: Any = status.StatusTopics(running)
     for factor in reached:
@@ -34,25 +29,6 @@ def warnings_at(
         running.time_control.pacer.wait_time(running.simulator.steps)
         assert topics.report()
     return warnings
-
-
-@pytest.mark.parametrize(
-    "factor, in_lockstep, nodes, count",
-    [(0, False, 1, 1), (0, True, 1, 0), (20, False, 1, 0), (500, False, 1, 1), (500, True, 1, 0), (0, False, 0, 0)],
-)
-def test_a_controller_at_full_speed_without_lockstep_is_warned_of_once(
-    monkeypatch: pytest.MonkeyPatch, factor: float, in_lockstep: bool, nodes: int, count: int
-) -> None:
-    warnings, running = [], MagicMock()
-    running.time_control.pacer.factor, running.time_control.paused = factor, False
-    running.controllers.in_lockstep = in_lockstep
-    monkeypatch.setattr(status, "publisher", MagicMock())
-    monkeypatch.setattr(status.rospy, "logwarn", lambda text, *values: warnings.append(text % values))
-    topics: Any = status.StatusTopics(running)
-    for _ in range(2):
-        topics.warn_of_full_speed(lambda: {ControllerId(0, "/node")} if nodes else set())
-    words = "/node may not keep up; use sync:=lockstep" if factor else "/node can't keep up; use sync:=lockstep"
-    assert len(warnings) == count and all(words in text for text in warnings)
 
 
 @pytest.mark.parametrize("setting, count", [({}, 1), ({"odom_slip": 0.1}, 0), ({"odom_wheel_radius_error": 0.05}, 0)])
@@ -80,11 +56,3 @@ def test_a_factor_that_is_kept_is_no_reason_for_a_warning(monkeypatch: pytest.Mo
 def test_a_machine_that_is_too_slow_is_warned_of_once(monkeypatch: pytest.MonkeyPatch) -> None:
     (warning,) = warnings_at(monkeypatch, 4.0, [4.0, 2.0, 1.0])
     assert warning.startswith("real-time factor 2.00 achieved, 4.00 requested: this machine is too slow")
-
-
-@pytest.mark.parametrize("asked, in_lockstep, same", [(4.0, False, True), (500.0, False, False), (500.0, True, True)])
-def test_results_are_said_to_be_the_same_only_where_controllers_keep_up(
-    monkeypatch: pytest.MonkeyPatch, asked: float, in_lockstep: bool, same: bool
-) -> None:
-    (warning,) = warnings_at(monkeypatch, asked, [2.0], in_lockstep)
-    assert ("results are the same" in warning) == same

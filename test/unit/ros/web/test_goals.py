@@ -8,17 +8,13 @@ from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from aro_robocop_goto_as.msg import GoToPositionActionFeedback, GoToPositionActionGoal, GoToPositionActionResult
 from frames_of_tests import transform
 
-from aro_robocop_goto_as.geometry import Pose2D, Pose3D, lifted
+from aro_robocop_goto_as.geometry import Pose2D, lifted
 from aro_robocop_goto_as.ros import markers
 from aro_robocop_goto_as.ros.web import goals
 from aro_robocop_goto_as.ros.web.frames import Frames
 from aro_robocop_goto_as.ros.web.part import Context
-from aro_robocop_goto_as.web.scene import BOX, Shape
 from aro_robocop_goto_as.web.state import PageState, SharedState
 
-WALLS = [((x, 0.0, 0.2), (0.1, 3.1, 0.4)) for x in (-1.5, 1.5)] + [
-    ((0.0, y, 0.2), (3.1, 0.1, 0.4)) for y in (-1.5, 1.5)
-]
 CLICK = MagicMock(ray_origin=(1.0, 2.0, 3.0), ray_direction=(0.0, 0.0, -1.0))
 
 
@@ -57,18 +53,6 @@ def test_a_click_is_a_goal_in_the_frame_of_the_scene():
     _, topic, pose, _ = clicked(goals.SEND_GOAL).publish.call_args[0]
     assert topic == "move_base_simple/goal"
     assert (pose.header.frame_id, pose.pose.position.x, pose.pose.position.y) == ("red/odom", 1.0, 2.0)
-
-
-@pytest.mark.parametrize("mode", [goals.SEND_GOAL, goals.PLACE_ROBOT])
-def test_a_click_outside_of_the_walls_is_answered_and_requests_nothing(mode):
-    part, context = made()
-    robot = Shape(BOX, (9.0, 9.0, 1.0)), Pose3D()
-    walls = [(Shape(BOX, size), Pose3D(at)) for at, size in WALLS]
-    context.scene.shapes.return_value = {("robots", 0): robot, **{("world", n): wall for n, wall in enumerate(walls)}}
-    part._mode.value = mode
-    part._on_click(CLICK)
-    assert "(1.00, 2.00): outside of the walls, nothing was sent" in context.state.now.answer
-    assert not context.requests.method_calls
 
 
 def test_a_click_into_the_sky_requests_nothing():
