@@ -36,7 +36,6 @@ def _bridge(name: str, check: str, words: str, *changes: Tuple[str, str], alone:
 
 
 CONDITION = "if abs(angle_error) > 0.1:"
-ERROR = "angle_error = wrap(math.atan2(dy, dx) - yaw)"
 POSE = "self.pose = (msg.pose.pose.position.x, msg.pose.pose.position.y, yaw)"
 START = "        self.server.start()\n"
 PREEMPTION = """            if self.server.is_preempt_requested():
@@ -56,8 +55,6 @@ AHEAD = "valid.min() if len(valid) else float('inf')"
 CANCEL_TOPIC = "        self.cancel_pub = rospy.Publisher('robocop_goto_as/cancel', GoalID, queue_size=1)\n"
 STATE = "GoalStatus.to_string(self.client.get_state())"
 
-# The velocity in force, for a solution that forgets half of it when it stops.
-W = ("        msg.angular.z = w\n", "        msg.angular.z = self.w = w\n")
 
 PLACE = (
     "        site = round(where('burger', '').pose.position.x / 40.0)\n"
@@ -170,13 +167,6 @@ WRONG: Tuple[Wrong, ...] = (
         alone=True,
     ),
     _server(
-        "pose_read_once",
-        "feedback_angle",
-        "read only at the start",
-        ("            x, y, yaw = self.pose\n", ""),
-        (RATE, "        rate = rospy.Rate(10)\n        x, y, yaw = self.pose\n"),
-    ),
-    _server(
         "scan_read_once",
         "stops_at_obstacle",
         "was not aborted when the obstacle ahead was nearer than 0.3 m",
@@ -281,17 +271,6 @@ WRONG: Tuple[Wrong, ...] = (
         ("            self.server.set_aborted(result)\n", "            pass\n"),
     ),
     _server(
-        "stops_driving_only", "stands_at_end", "kept moving", ("self.drive(0.0, 0.0)", "self.drive(0.0, self.w)"), W
-    ),
-    _server(
-        "preempted_only_while_driving",
-        "cancel",
-        "when the robot has turned",
-        (REQUESTED, "            if self.pose_error < 0.1 and self.server.is_preempt_requested():"),
-        ("        self.count = 0\n", "        self.pose_error = 9.9\n"),
-        (ERROR, f"{ERROR}\n            self.pose_error = abs(angle_error)"),
-    ),
-    _server(
         "done_never_cleared",
         "next_goal",
         "not reset when a new goal begins",
@@ -346,7 +325,6 @@ WRONG: Tuple[Wrong, ...] = (
         alone=True,
     ),
     _bridge("bridge_never_sends", "forwards_goal", "No goal was sent", ("self.client.send_goal(goal)", "pass")),
-    _bridge("bridge_logs_debug", "reports_status", "Too little is logged", ("rospy.loginfo(", "rospy.logdebug(")),
     _bridge(
         "bridge_publishes_figures",
         "reports_status",
@@ -374,21 +352,6 @@ WRONG: Tuple[Wrong, ...] = (
         alone=True,
     ),
     _bridge(
-        "bridge_sends_the_click_before",
-        "forwards_goal",
-        "has the position of the older click",
-        (POSITION, "self.last, goal.position = pose.pose.position, getattr(self, 'last', pose.pose.position)"),
-        alone=True,
-    ),
-    _bridge(
-        "bridge_reports_by_the_clock",
-        "reports_status",
-        "reports ACTIVE while the newest goal is ABORTED",
-        ("        self.sent = True\n", "        self.sent = rospy.get_time()\n"),
-        (STATE, "'ACTIVE' if self.sent and rospy.get_time() < self.sent + 20.0 else 'SUCCEEDED'"),
-        alone=True,
-    ),
-    _bridge(
         "bridge_timer_dies_at_an_aborted_goal",
         "bridge_alive",
         "KeyError: 4",
@@ -413,17 +376,6 @@ WRONG: Tuple[Wrong, ...] = (
         alone=True,
     ),
     _bridge(
-        "bridge_with_an_action_server",
-        "waits_for_server",
-        "has an action server robocop_goto_as of its own",
-        (
-            "        self.client.wait_for_server()\n",
-            "        topic, kind = 'robocop_goto_as', GoToPositionAction\n"
-            "        self.server = getattr(actionlib, 'SimpleActionServer')(topic, kind, None, auto_start=False)\n"
-            "        self.server.start()\n        self.client.wait_for_server()\n",
-        ),
-    ),
-    _bridge(
         "bridge_gives_up",
         "forwards_goal",
         "without a timeout",
@@ -435,12 +387,6 @@ WRONG: Tuple[Wrong, ...] = (
         "waits_for_server",
         "AssertionError",
         ("self.client.wait_for_server()", "assert self.client.wait_for_server(rospy.Duration(1))"),
-    ),
-    _bridge(
-        "bridge_raw_frame",
-        "goal_frame",
-        "as if they were in odom",
-        ("pose = self.buffer.transform(msg, 'odom', rospy.Duration(1.0))", "pose = msg"),
     ),
     _server(
         "turns_again_only_beyond_half_a_radian",
@@ -666,19 +612,6 @@ WRONG: Tuple[Wrong, ...] = (
         alone=True,
     ),
     _server(
-        "feedback_for_ever",
-        "feedback_rate",
-        "goes on after its result",
-        ("        self.count = 0\n", f"        self.feedback = None\n{FEEDBACK_TIMER}"),
-        (PUBLISH, f"            self.feedback = feedback\n{PUBLISH}"),
-        (
-            DRIVE_BEGIN,
-            "    def tell(self, _event):\n        if self.feedback and not self.server.is_active():\n"
-            f"            self.server.publish_feedback(self.feedback)\n\n{DRIVE_BEGIN}",
-        ),
-        alone=True,
-    ),
-    _server(
         "feedback_timer_raises",
         "no_exception",
         "TypeError",
@@ -689,13 +622,6 @@ WRONG: Tuple[Wrong, ...] = (
             "    def tell(self, _event):\n        if self.server.is_active():\n"
             f"            self.server.publish_feedback(*self.errors)\n\n{DRIVE_BEGIN}",
         ),
-        alone=True,
-    ),
-    _server(
-        "success_needs_the_angle",
-        "already_there",
-        "turns at the goal",
-        (REACHED, "if position_error < 0.1 and abs(angle_error) < 0.1:"),
         alone=True,
     ),
     _server(
