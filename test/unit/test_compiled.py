@@ -16,7 +16,7 @@ from aro_robocop_goto_as.raycast import caster_library
 
 NAME = compiled.file_name("caster")
 SOURCES = {
-    "caster": ["raycast/caster.c", "raycast/movers.c", "sensors/lidar.c"],
+    "caster": ["raycast/caster.c", "sensors/lidar.c"],
     "batch": ["ros/publishing/batch.c"],
     "fleet": ["robot/base_controller.c", "physics/kinematic.c", "sensors/odometry.c"],
 }

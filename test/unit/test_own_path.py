@@ -1,5 +1,6 @@
 """No command replaces what it did not make: a path that a user gives is new, empty, or has the command's stamp."""
 
+import signal
 import sys
 from pathlib import Path
 
@@ -9,8 +10,18 @@ from support import ROOT
 from aro_robocop_goto_as.cli import system_commands
 from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.own_path import expect_own
+from aro_robocop_goto_as.process.signals import ENDING_SIGNALS
 from robocop_grading import cli, new
 from robocop_grading.classroom import main as classroom
+
+
+@pytest.fixture(autouse=True)
+def signal_handlers():
+    """Restore the handlers that the commands replace: what another test starts would inherit ignored signals."""
+    before = {number: signal.getsignal(number) for number in ENDING_SIGNALS}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
 
 
 def program(main, *words):
