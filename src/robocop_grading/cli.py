@@ -27,7 +27,7 @@ from .plan import Plan
 from .plan_file import load
 from .report.write import make_report_folder
 from .runner import Runner
-from .sandbox.bubblewrap import Sandbox, expect_private, open_sandbox
+from .sandbox.bubblewrap import Sandbox, expect_private, expect_readable, open_sandbox
 from .scenarios import MIDDLE
 from .submission import prepare_submission
 from .texts import printable, printable_lines
@@ -99,6 +99,8 @@ def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[
     if given.is_file() and given.suffix.lower() in unpacking.OTHER_ARCHIVES and not unpacking.is_packed(given):
         raise GradingError(f"{path}: can't be unpacked: expected zip or tar")
     if not unpacking.is_packed(given):
+        if sandbox is not None:
+            expect_readable(given)
         return path, []
     unpacked = unpacking.unpack(given)
     tree.remove(folder)

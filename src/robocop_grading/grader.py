@@ -18,7 +18,7 @@ from .submission import Submission
 
 NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that they need"
 MISSING = "Python's module {} is not installed here{}"
-BESIDE = "{0}.py lies beside {1}, but only {1} was given: grade the folder"
+BESIDE = "{0} lies beside {1}, but only {1} was given: grade the folder"
 NAME_IT = "; if the lab has it, name its package in the plan, under packages"
 LAB_MODULES = (
     "actionlib actionlib_msgs angles aro_robocop_goto_as geometry_msgs laser_geometry nav_msgs numpy ros_numpy rospy "
@@ -57,9 +57,10 @@ def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = Fa
 def _missing_modules(records: Mapping[str, Record], script: Path) -> List[str]:
     lines = [line.text for record in records.values() for line in record.lines]
     names = sorted({name for line in lines for name in _NO_MODULE.findall(line)})
+    modules = {it: next(script.parent.glob(f"{it}.py"), script.parent / it) for it in names}  # a file or a folder
     return [
-        BESIDE.format(it, script.name)
-        if (script.parent / f"{it}.py").exists()
+        BESIDE.format(path.name, script.name)
+        if path.exists()
         else MISSING.format(it, did_you_mean(it, LAB_MODULES, similarity=MISTYPED) or NAME_IT)
-        for it in names
+        for it, path in modules.items()
     ]

@@ -22,7 +22,7 @@ from robocop_hosting.workspace import exclusive, places
 
 from ..cli import INTERRUPTED, WRONG_USE
 from ..errors import GradingSetupError
-from ..files.exports import class_folder, hand_in_of, people
+from ..files.exports import class_folder, hand_in_of, people, visible
 from ..plan import Plan
 from ..plan_file import load
 from ..report.write import make_report_folder
@@ -31,6 +31,7 @@ from ..scenarios import MAX_SEED
 from ..submission import lab_environment
 from ..texts import printable_lines, shortened
 from .hand_ins import collect
+from .results import STAMP as RESULT
 from .results import WAITING, Results, StoredGrade, page, summary, write_atomically
 from .summary import Summary, pace
 from .table import one_line, table
@@ -153,6 +154,10 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
     if folder != given:
         print(f"{one_line(str(folder))} is the class: nothing else is in {one_line(str(given))}", flush=True)
     hand_ins = _hand_ins(folder)
+    stored = [path.name for path in visible(out) if (path / RESULT).is_file()] if out.is_dir() else []
+    if stored and not {*stored} & {*hand_ins}:
+        others = f"results of other hand-ins, such as {stored[0]}"
+        raise GradingSetupError(f"{out} has {others}: give another folder by --report")
     version = ElementTree.parse(share / "package.xml").findtext("version")
     make_report_folder(out, STAMP)
     with scratch_folder(), exclusive(out / ".run"):

@@ -156,7 +156,7 @@ def _unpack_zip(file: "IO[bytes]", found: Unpacked, prefix: str) -> None:
             if stat.S_ISLNK(mode):
                 found.add(path, Entry(LINK, target=os.fsdecode(source.read(MAX_TARGET))))
             else:
-                found.add_file(path, _file_mode(mode), source, info.file_size)
+                found.add_file(path, file_mode(mode), source, info.file_size)
 
 
 def _name_in_zip(info: zipfile.ZipInfo) -> str:
@@ -200,10 +200,11 @@ def _unpack_tar(file: "IO[bytes]", found: Unpacked, prefix: str) -> None:
             raise GradingError(f"{member.name}: a hard link to {member.linkname}, which is not in it") from None
         if source is None:
             raise GradingError(f"{member.name}: expected a file, folder or link")
-        found.add_file(path, _file_mode(member.mode), source, member.size)
+        found.add_file(path, file_mode(member.mode), source, member.size)
 
 
-def _file_mode(mode: int) -> int:
+def file_mode(mode: int) -> int:
+    """A file's mode without what a umask has made of it: readable by everybody, executable or not."""
     return stat.S_IFREG | (0o755 if mode & 0o111 else 0o644)
 
 

@@ -11,7 +11,7 @@ from typing import Dict, List, Mapping
 from robocop_hosting import tree
 
 from ..errors import GradingError
-from .archives import FOLDER, LEFT_OUT, Entry, Unpacked, is_archive, is_left_out, unpack_archive
+from .archives import FOLDER, LEFT_OUT, Entry, Unpacked, file_mode, is_archive, is_left_out, unpack_archive
 
 MAX_NESTED = 3  # archives, one inside another, in what was handed in
 MAX_NAMED = 10  # files in a message
@@ -66,7 +66,7 @@ def _add_from_disk(path: Path, found: Unpacked, top: str = "") -> None:
         if is_left_out(PurePosixPath(name)):
             continue
         if stat.S_ISREG(mode):
-            found.add_file(name, mode, open(inner, "rb"), status.st_size)
+            found.add_file(name, file_mode(mode), open(inner, "rb"), status.st_size)
         else:
             found.add(name, Entry(mode, target=os.readlink(inner) if stat.S_ISLNK(mode) else ""))
 

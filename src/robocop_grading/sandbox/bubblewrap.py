@@ -7,6 +7,7 @@ A build runs the submission's code, so it is done in the sandbox too. limits.py 
 
 import importlib.util
 import os
+import shlex
 import shutil
 import stat
 import subprocess
@@ -166,18 +167,32 @@ def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
         raise GradingSetupError(f"bubblewrap is not installed; {advice}")
     if importlib.util.find_spec("seccomp") is None:
         raise GradingSetupError(f"python3-seccomp is not installed; {advice}")
-    shown = [AGENT, *(path for path in reads if path.exists())]
-    find = ["/usr/bin/find", *map(str, shown), *UNREADABLE]
-    trial = Sandbox(()).command_inside(find, {}, shown, Path("/tmp/home"))
-    try:
-        done = subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL_TIME)
-    except subprocess.TimeoutExpired as error:
-        raise UngradableError(f"bubblewrap did not run within {TRIAL_TIME:g} s") from error
+    done = _trial([AGENT, *(path for path in reads if path.exists())])
     if done.returncode != 0:
         if any(map(os.path.exists, CONTAINER_MARKS)):
             advice = f"`docker run {CONTAINER_OPTIONS}` lets it run in a container; {advice}"
         raise GradingSetupError(f"bubblewrap can't run here: {done.stderr.strip()}; {advice}")
-    if done.stdout:
-        remedy = " ".join(map(str, ("chmod -R go+rX", ROOT, *reads)))
-        raise GradingSetupError(f"{done.stdout.strip()}: submissions run as a user who can't read it: {remedy}")
+    _expect_readable(done.stdout, [ROOT, *reads])
     return Sandbox(tuple(reads))
+
+
+def expect_readable(path: Path) -> None:
+    """GradingSetupError for a submission that can't be read in the sandbox, as after unpacking it with umask 077."""
+    if path.exists():
+        _expect_readable(_trial([path]).stdout, [path])
+
+
+def _expect_readable(unreadable: str, paths: Sequence[Path]) -> None:
+    if unreadable:
+        remedy = shlex.join(["chmod", "-R", "go+rX", *map(str, paths)])
+        raise GradingSetupError(f"{unreadable.strip()}: submissions run as a user who can't read it: {remedy}")
+
+
+def _trial(shown: Sequence[Path]) -> "subprocess.CompletedProcess[str]":
+    """What find says in the sandbox: the first file that can't be read; UngradableError if not in time."""
+    find = ["/usr/bin/find", *map(str, shown), *UNREADABLE]
+    try:
+        trial = Sandbox(()).command_inside(find, {}, shown, Path("/tmp/home"))
+        return subprocess.run(trial, capture_output=True, text=True, timeout=TRIAL_TIME)
+    except subprocess.TimeoutExpired as error:
+        raise UngradableError(f"bubblewrap did not run within {TRIAL_TIME:g} s") from error

@@ -98,6 +98,20 @@ def test_classes_in_folders_of_the_same_name_have_results_and_seeds_of_their_own
     assert ran == ["anna.py"] and (second.results.folder / ".robocop_class").read_text() == f"{second.plan.seed}\n"
 
 
+def test_results_of_another_class_are_not_replaced(folder, grade_class):
+    _, first = grade_class()
+    tuesday = folder.parent / "tuesday"
+    tuesday.mkdir()
+    (tuesday / "carl.py").touch()
+    table = (first.results.folder / "grades.csv").read_text()
+    with pytest.raises(GradingSetupError, match="has results of other hand-ins, such as anna: give another folder"):
+        grade_class(tuesday, report=str(first.results.folder))
+    assert (first.results.folder / "grades.csv").read_text() == table
+    (tuesday / "anna").mkdir()  # a later export of the same class
+    (tuesday / "anna" / "robocop_goto_as.py").touch()
+    assert grade_class(tuesday, report=str(first.results.folder))[0] == ["anna", "carl.py"]
+
+
 @pytest.fixture
 def group(tmp_path):
     """A class of four: Anna is judged, Ben is not gradable, the others have no result yet."""

@@ -277,6 +277,12 @@ def test_only_a_folder_without_anything_to_grade_outside_of_its_archives_is_unpa
     assert unpacking.is_packed(written(tmp_path, files)) is is_packed
 
 
+def test_unpacked_file_can_be_read_by_everybody_whatever_its_owner_s_umask_was(tmp_path):
+    (tmp_path / SERVER).touch(mode=0o600)
+    unpacking.unpack(tmp_path / SERVER).write(tmp_path / "out.py")
+    assert stat.S_IMODE((tmp_path / "out.py").stat().st_mode) == 0o644
+
+
 def test_single_archive_is_graded_as_what_it_contains(tmp_path):
     folder, out = tmp_path / "class", tmp_path / "out"
     folder.mkdir()
