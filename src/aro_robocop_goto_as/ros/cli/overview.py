@@ -97,7 +97,7 @@ def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:
         world += ", moving:=true; obstacles may move into the robot's way, moving:=false stops them"
     elif world in WITH_PILLARS:
         world += "; its pillars stand still, moving:=true starts them"
-    robots, model = p.robots.robots, p.robots.model
+    robots, model = p.robots.robots.strip("; "), p.robots.model
     shown = f"{robots} ({model} unless named)" if robots else model
     rows = [("world", world), ("robots" if robots else "robot", shown)]
     without = "none from odom to the robot: a bridge that transforms goals needs odom_tf:=true"

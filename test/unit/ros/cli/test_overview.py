@@ -75,6 +75,7 @@ def test_commands_for_a_second_terminal_use_the_master_of_this_one(monkeypatch, 
         ({}, ["world         stage_4; its pillars stand still, moving:=true starts them\n", "goto 0.3 0\n"]),
         ({"moving": True}, ["obstacles may move into the robot's way, moving:=false stops them", "goto -0.7 -0.6\n"]),
         ({"world": "world"}, ["world         world\n", "goto X Y "]),
+        ({"robots": "red 0 0;"}, ["robots        red 0 0 (burger unless named)\n"]),
         ({"odom_tf": False}, ["a bridge that transforms goals needs odom_tf:=true"]),
     ],
 )
