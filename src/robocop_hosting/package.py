@@ -61,7 +61,7 @@ def find_package(path: str, launch: str = "", grades: bool = True) -> Package:
     named = _packages(top)
     if not named:
         raise HostingError(
-            f"{path}: no package.xml in it or below it, but for ones with CATKIN_IGNORE; expected a package"
+            f"{path}: no package.xml in it or below it (folders with CATKIN_IGNORE are left out); expected a package"
         )
     name, folder = _chosen(path, named, launch)
     if not NAME.fullmatch(name):
