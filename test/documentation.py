@@ -2,7 +2,7 @@
 
 import re
 from pathlib import Path
-from typing import Iterator, List, NamedTuple, Set
+from typing import List, NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -17,7 +17,7 @@ class Block(NamedTuple):
     lines: List[str]
 
 
-def blocks() -> Iterator[Block]:
+def blocks():
     """All fenced blocks."""
     for page in PAGES:
         heading, block = "", None
@@ -34,18 +34,18 @@ def blocks() -> Iterator[Block]:
                 heading = line.lstrip("# ")
 
 
-def links(page: Path) -> List[str]:
+def links(page):
     """The relative links of a page, images included."""
     return re.findall(r"\]\((?!\w+:)([^)\s]+)\)", page.read_text(encoding="utf-8"))
 
 
-def anchors(page: Path) -> Set[str]:
+def anchors(page):
     """The anchors of a page's headings, as GitHub and GitLab name them."""
     headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.M)
     return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-def commands(*programs: str) -> List[str]:
+def commands(*programs):
     """The fenced command lines that begin with one of these programs, without their comments."""
     found = []
     for block in blocks():
@@ -57,7 +57,7 @@ def commands(*programs: str) -> List[str]:
     return found
 
 
-def inline_commands(program: str) -> List[str]:
+def inline_commands(program):
     """Commands of a program within sentences and tables, except those with placeholders in capitals."""
     found = []
     for page in PAGES:

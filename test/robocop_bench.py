@@ -8,17 +8,16 @@ import signal
 import sys
 import tempfile
 from pathlib import Path
-from typing import List, Mapping, Optional, Sequence
 
 from bench import BenchError, cases, instructions, report
 from bench.measure import measure, other_checkout
-from bench.report import Measured, Row
+from bench.report import Measured
 from systems import System
 
 USUAL, QUICK = (5.0, 3), (1.5, 1)  # [s] a measurement, repeats
 
 
-def _arguments() -> argparse.Namespace:
+def _arguments():
     parser = argparse.ArgumentParser(
         prog="robocop bench",
         description="Measure the speed of the simulator and its cost.",
@@ -45,14 +44,14 @@ def _arguments() -> argparse.Namespace:
     return args
 
 
-def _instructions(wanted: Sequence[cases.Case], against: Optional[Path]) -> str:
+def _instructions(wanted, against):
     """The table of instructions of the cases without a controller, in this checkout and another one."""
     others = {"other": (against.absolute(), other_checkout(against))} if against else {}
     counted = [case for case in wanted if not case.lockstep]
     return instructions.table(counted, {**others, "this": (Path(__file__).parents[1], os.environ)})
 
 
-def _measure(rows: Sequence[Row], checkouts: Sequence[Mapping[str, str]], seconds: float, repeats: int) -> None:
+def _measure(rows, checkouts, seconds, repeats):
     """Measure every case in each checkout, alternating, so that other load affects all of them alike.
 
     A case that fails is not repeated.
@@ -73,14 +72,14 @@ def _measure(rows: Sequence[Row], checkouts: Sequence[Mapping[str, str]], second
                     print(f"robocop bench: {measured.notes()[0]}", file=sys.stderr)
 
 
-def main() -> int:
+def main():
     """Print the report; a signal ends everything that was started, and what was measured until then is printed."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)
     for name in ("ROS_IP", "ROS_NAMESPACE"):
         os.environ.pop(name, None)
     args, status = _arguments(), 0
-    rows: List[Row] = []
+    rows = []
     try:
         wanted = cases.parse_cases(args.cases or [*cases.DEFAULT, *(cases.LOCKSTEP if args.against else ())])
         if args.instructions:

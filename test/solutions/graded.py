@@ -2,20 +2,18 @@
 
 import os
 from pathlib import Path
-from typing import Callable, Sequence
 
 from robocop_grading import judge
-from robocop_grading.grades import Grade
 from robocop_grading.plan_file import load
-from robocop_grading.runner import BUDGET, Recorded, Runner
-from robocop_grading.sandbox.bubblewrap import Sandbox, open_sandbox
+from robocop_grading.runner import BUDGET, Runner
+from robocop_grading.sandbox.bubblewrap import open_sandbox
 from robocop_grading.submission import prepare_submission
 
 STATE, SHARE = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
 PLAN = SHARE / "config" / "grading.yaml"
 
 
-def sandbox() -> Sandbox:
+def sandbox():
     """The sandbox that solutions run in; GradingError says why this machine can't have one."""
     opened = open_sandbox(False, [STATE / "venv", STATE / "compat"])
     assert opened is not None
@@ -23,13 +21,13 @@ def sandbox() -> Sandbox:
 
 
 def recorded(
-    text: str,
-    folder: Path,
-    only: Sequence[str] = (),  # checks
-    budget: float = BUDGET,
-    seed: int = 0,
-    on_progress: Callable[[str], None] = lambda _scenario: None,
-) -> Recorded:
+    text,
+    folder,
+    only=(),  # checks
+    budget=BUDGET,
+    seed=0,
+    on_progress=lambda _scenario: None,
+):
     """A solution driven through the scenarios of its part, or some of them, in the sandbox."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "solution.py").write_text(text)
@@ -40,12 +38,12 @@ def recorded(
     return chosen.run(submission, script, folder / "out")
 
 
-def graded(name: str, text: str, folder: Path, seed: int = 0, only: Sequence[str] = ()) -> Grade:
+def graded(name, text, folder, seed=0, only=()):
     """The grade of a solution, or of what some checks need."""
     return judged(name, recorded(text, folder, only, seed=seed), seed, only)
 
 
-def judged(name: str, run: Recorded, seed: int = 0, only: Sequence[str] = ()) -> Grade:
+def judged(name, run, seed=0, only=()):
     """The grade of a solution that was driven."""
     part = "bridge" if "no_server" in run.records else "server"
     return judge.judge(name, load(PLAN, seed).restricted(only), {part: run.records}, {part: run.problem})

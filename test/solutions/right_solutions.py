@@ -1,14 +1,14 @@
 """Right solutions: whole files, and a base with changes that the handout allows."""
 
 from pathlib import Path
-from typing import Dict, Tuple
+from typing import Tuple
 
 HERE = Path(__file__).resolve().parent
 SERVER, BRIDGE = "base_server.py.in", "base_bridge.py.in"
 Changes = Tuple[Tuple[str, str], ...]  # what is replaced, and by what
 
 
-def changed(name: str, base: str, changes: Changes) -> str:
+def changed(name, base, changes):
     """The source of a base with changes."""
     text = (HERE / base).read_text()
     for old, new in changes:
@@ -30,7 +30,7 @@ SUBSCRIBERS = """        rospy.Subscriber('/odom', Odometry, self.odom_cb)
 POSE_READ = "            x, y, yaw = self.pose\n"
 PUBLISH = "            self.server.publish_feedback(feedback)\n"
 
-CHANGED: Dict[str, Changes] = {
+CHANGED = {
     # At the robot's limits and twice as often as in the handout's example; only beams within 15 degrees count as ahead;
     # prints exceptions that it has caught.
     "fast_and_often": (
@@ -141,7 +141,7 @@ CHANGED: Dict[str, Changes] = {
     ),
 }
 
-RIGHT: Dict[str, str] = {
+RIGHT = {
     **{
         path.name[: -len(".py.in")]: path.read_text()
         for path in sorted([*HERE.glob("base_*.py.in"), *(HERE / "right").glob("*.py.in")])

@@ -1,7 +1,6 @@
 """Wrong solutions: the base with one mistake each, the check that has to fail, and words of its explanation."""
 
 from dataclasses import dataclass
-from typing import Dict, Optional, Tuple
 
 from right_solutions import ABORT, BRIDGE, DRIVE, OBSTACLE, PUBLISH, RATE, SERVER, SLEEP, TURN, Changes, changed
 
@@ -22,16 +21,16 @@ class Wrong:
     base: str = SERVER
     alone: bool = False
 
-    def text(self) -> str:
+    def text(self):
         """The source with the mistake in it."""
         return changed(self.name, self.base, self.changes)
 
 
-def _server(name: str, check: str, words: str, *changes: Tuple[str, str], alone: bool = False) -> Wrong:
+def _server(name, check, words, *changes, alone=False):
     return Wrong(name, check, words, changes, alone=alone)
 
 
-def _bridge(name: str, check: str, words: str, *changes: Tuple[str, str], alone: bool = False) -> Wrong:
+def _bridge(name, check, words, *changes, alone=False):
     return Wrong(name, check, words, changes, BRIDGE, alone)
 
 
@@ -67,7 +66,7 @@ SUBSCRIBE_CANCEL = (
 FEEDBACK_TIMER = "        rospy.Timer(rospy.Duration(0.1), self.tell)\n"
 DRIVE_BEGIN = "    def drive(self, v, w):\n"
 
-WRONG: Tuple[Wrong, ...] = (
+WRONG = (
     _server(
         "misspelt_name",
         "action_server",
@@ -684,7 +683,7 @@ WRONG: Tuple[Wrong, ...] = (
 )
 
 # The row of consequences (the first of the later checks, kind, earlier check) -> the wrong server that needs it.
-ROWS: Dict[Tuple[str, Optional[Kind], str], str] = {
+ROWS = {
     ("", Kind.NOT_REACHED, "action_server"): "never_started",
     ("no_exception", None, "action_server"): "crashes_at_start",
     ("stays_alive", None, "no_exception"): "name_error_in_the_main_loop",
@@ -720,7 +719,7 @@ ROWS: Dict[Tuple[str, Optional[Kind], str], str] = {
 }
 
 # Solutions that get full marks, and advice with these words.
-ADVISED: Tuple[Wrong, ...] = (
+ADVISED = (
     _bridge(
         "bridge_pending_is_stopped",
         "reports_status",

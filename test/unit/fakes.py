@@ -1,14 +1,14 @@
 """A wall clock that advances only while somebody waits, and the owner of a running simulator without ROS."""
 
 import queue
-from typing import AbstractSet, Callable, List, Set, Tuple
+from typing import Callable, List, Set, Tuple
 
 from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.simulation.agenda import Due
 from aro_robocop_goto_as.simulation.factory import make_simulator
-from aro_robocop_goto_as.simulation.jobs import Queue, WallClock
+from aro_robocop_goto_as.simulation.jobs import WallClock
 from aro_robocop_goto_as.simulation.lockstep import ControllerId
 from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.simulation.running import RunningSimulator
@@ -18,26 +18,26 @@ from aro_robocop_goto_as.simulation.simulator import Change
 class FakeClock(WallClock):
     """Waiting takes no real time; actions may be scheduled at a time [s] of this clock."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.time = 100.0
         self._scheduled: List[Tuple[float, Callable[[], object]]] = []
 
-    def at(self, delay: float, action: Callable[[], object]) -> None:
+    def at(self, delay, action):
         """Schedule an action, such as posting a job, after a delay [s]."""
         self._scheduled.append((self.time + delay, action))
         self._scheduled.sort(key=lambda entry: entry[0])
 
-    def now(self) -> float:
+    def now(self):
         return self.time
 
-    def sleep(self, seconds: float) -> None:
+    def sleep(self, seconds):
         deadline = self.time + seconds
         while self._scheduled and self._scheduled[0][0] <= deadline:
             self.time, action = self._scheduled.pop(0)
             action()
         self.time = deadline
 
-    def get(self, jobs: "Queue[Callable[[], object]]", timeout: float) -> Callable[[], object]:
+    def get(self, jobs, timeout):
         deadline = self.time + max(0.0, timeout)
         while jobs.empty():
             if not self._scheduled or self._scheduled[0][0] > deadline:
@@ -51,7 +51,7 @@ class FakeClock(WallClock):
 class Owner:
     """Runs one robot in the empty world without ROS, by a fake clock, and notes what is published."""
 
-    def __init__(self, end: float = 1.0, **params: object) -> None:
+    def __init__(self, end=1.0, **params):
         """Stops at a simulated time [s]; `params` are the simulator's."""
         p = SimParams.of(drive="kinematic", cmd_vel_timeout=0.0, **params)
         self.simulator = make_simulator(p, world_named("empty"), [RobotSpec("", model_named("burger"), ORIGIN)])
@@ -63,11 +63,11 @@ class Owner:
         self.is_stopped: Callable[[], bool] = lambda: self.simulator.time >= self.end
         self.running = RunningSimulator(self.simulator, self.clock, lambda: self.is_stopped())
 
-    def post(self, delay: float, job: Callable[[], object]) -> None:
+    def post(self, delay, job):
         """Have another thread post a job after a delay [s, wall]."""
         self.clock.at(delay, lambda: self.running.jobs.post(job))
 
-    def run(self) -> None:
+    def run(self):
         for now in self.running.rounds(lambda: {"odom": [0]}, self._connected):
             if now.due is not None:
                 self.seen.append((self.simulator.stamp_ns, now.due))
@@ -81,5 +81,5 @@ class Owner:
                 self.events += [("late", now.tick.late)] if now.tick.late else []
                 self.events += [("gone", controller) for controller in now.tick.gone]
 
-    def _connected(self) -> AbstractSet[ControllerId]:
+    def _connected(self):
         return {ControllerId(0, node) for node in self.nodes}

@@ -4,13 +4,11 @@ import math
 import tempfile
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, List, Optional
 
 from support import ROOT
 
 from robocop_grading import record as rec
 from robocop_grading.checks import Failed
-from robocop_grading.classroom.results import Results
 from robocop_grading.grades import CheckOutcome, CheckResult, Grade
 from robocop_grading.handout import Limits
 from robocop_grading.judge import judge
@@ -24,9 +22,9 @@ LIMITS = Limits()
 GOAL = rec.SentGoal("g", 1.0, 1.0, 0.0, "SUCCEEDED")
 
 
-def drive() -> Record:
+def drive():
     """A run: the robot turns by 45 degrees in 2 s, then drives to the goal in 8 s, with feedback at every tick."""
-    samples: List[rec.Sample] = []
+    samples = []
     commands, feedback = [], []
     far = math.hypot(1.0, 1.0) - 0.09
     for tick in range(131):
@@ -56,39 +54,39 @@ def drive() -> Record:
 RIGHT = drive()
 
 
-def changed(**fields: Any) -> Record:
+def changed(**fields):
     return replace(RIGHT, **fields)
 
 
-def fed_back(position: Any = lambda error: error, angle: Any = lambda error: error) -> Record:
+def fed_back(position=lambda error: error, angle=lambda error: error):
     """The same run with different values in its feedback."""
     told = [(it, position(it.position_error), angle(it.angle_error)) for it in RIGHT.feedback]
     return changed(feedback=tuple(replace(it, position_error=d, angle_error=a) for it, d, a in told))
 
 
-def commanded(change: Any) -> Record:
+def commanded(change):
     return changed(commands=tuple(change(it) for it in RIGHT.commands))
 
 
-def graded(*records: Record, problem: str = "") -> Grade:
+def graded(*records, problem=""):
     """The grade of one part that left these records."""
     part = records[0].part
     return judge("anna", PLAN, {part: {record.name: record for record in records}}, {part: problem})
 
 
-def judged(name: str, part: str, points: float, cause: str = "", extra: bool = False, follows: str = "") -> CheckResult:
+def judged(name, part, points, cause="", extra=False, follows=""):
     """The result of a check, failed if there is a cause."""
     failure = Failed("", "", 0.0, cause) if cause else None
     outcome = CheckOutcome.FAILED if cause else CheckOutcome.PASSED
     return CheckResult(name, part, "", outcome, points, 1.0, extra, failure=failure, follows=follows)
 
 
-def keep(results: Results, name: str, cause: str = "", follows: str = "", digest: Optional[str] = None) -> None:
+def keep(results, name, cause="", follows="", digest=None):
     """Store the report of a hand-in with one check, as a worker does."""
     keep_grade(results, Grade(name, (judged("cancel", "server", 0.2, cause, follows=follows),)), digest)
 
 
-def keep_grade(results: Results, grade: Grade, digest: Optional[str] = None) -> None:
+def keep_grade(results, grade, digest=None):
     """Store the report of a grade."""
     with tempfile.TemporaryDirectory() as folder:
         write(grade, PLAN, {}, Path(folder))

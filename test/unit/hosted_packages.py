@@ -1,13 +1,10 @@
 """Folders with packages to host."""
 
-from pathlib import Path
-from typing import Dict
-
 LAB = "aro_robocop_goto_as"
 MANIFEST = "<package><name> {} </name></package>"
 
 
-def tree(top: Path, files: Dict[str, str]) -> Path:
+def tree(top, files):
     """Write files, given by their paths and texts, below a folder; returns it."""
     for name, text in files.items():
         (top / name).parent.mkdir(parents=True, exist_ok=True)

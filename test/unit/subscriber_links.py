@@ -3,10 +3,9 @@
 import itertools
 import socket
 import struct
-from typing import Callable, Iterator, NamedTuple
+from typing import NamedTuple
 
 import pytest
-import rospy
 from rospy.impl.tcpros_base import TCPROSTransport
 from rospy.impl.tcpros_pubsub import TCPROSPub
 
@@ -21,7 +20,7 @@ class Link(NamedTuple):
     socket: socket.socket
 
 
-def received(end: socket.socket, size: int) -> bytes:
+def received(end, size):
     """The next bytes at a subscriber's end."""
     end.settimeout(60.0)
     data = b""
@@ -33,13 +32,13 @@ def received(end: socket.socket, size: int) -> bytes:
 
 
 @pytest.fixture(name="connect")
-def connected_by_hand() -> Iterator[Callable[..., Link]]:
+def connected_by_hand():
     """Connects one more subscriber to a topic, as rospy's server does after the handshake."""
     server = socket.create_server(("127.0.0.1", 0))
     names = (f"/subscriber_{i}" for i in itertools.count())
     ends = [socket.create_connection(server.getsockname())]
 
-    def connect(topic: rospy.Publisher) -> Link:
+    def connect(topic):
         connection = TCPROSTransport(TCPROSPub(topic.name, topic.data_class), topic.name)
         connection.set_socket(server.accept()[0], next(names))
         ends.append(socket.create_connection(server.getsockname()))  # here, so that accept() got the first free number

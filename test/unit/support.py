@@ -3,46 +3,42 @@
 import functools
 import math
 import os
-from typing import Callable, Dict, Iterable, Iterator, List, Sequence
 
 import numpy as np
 import pytest
 
-from aro_robocop_goto_as.geometry import Pose2D, Twist2D
+from aro_robocop_goto_as.geometry import Pose2D
 from aro_robocop_goto_as.robot.catalog import load_model
-from aro_robocop_goto_as.robot.model import RobotModel, RobotSpec
+from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.shapes import Box, Cylinder
-from aro_robocop_goto_as.simulation.agenda import Due
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.params import SimParams
-from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.load import find_world, load_world
-from aro_robocop_goto_as.world.model import World
 
 ORIGIN = Pose2D()
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 
 @pytest.fixture(scope="session")
-def burger() -> RobotModel:
+def burger():
     return model_named("burger")
 
 
 @functools.lru_cache(maxsize=None)
-def model_named(name: str) -> RobotModel:
+def model_named(name):
     return load_model(name, ROOT)
 
 
-def world_named(name: str) -> World:
+def world_named(name):
     return load_world(find_world(name, os.path.join(ROOT, "worlds")))
 
 
 @pytest.fixture
-def simulator() -> Iterator[Callable[..., Simulator]]:
+def simulator():
     """Creates simulators, and closes them at the end of the test."""
-    made: List[Simulator] = []
+    made = []
 
-    def make(world: str = "empty", *spawns: Pose2D, **params: object) -> Simulator:
+    def make(world="empty", *spawns, **params):
         p = SimParams.of(**params)
         model = model_named(p.robots.model)
         robots = [RobotSpec(f"robot_{i}", model, spawn) for i, spawn in enumerate(spawns or [ORIGIN], 1)]
@@ -54,12 +50,12 @@ def simulator() -> Iterator[Callable[..., Simulator]]:
         one.close()
 
 
-def everything(sim: Simulator) -> Dict[str, Sequence[int]]:
+def everything(sim):
     """Subscriptions to all sensors of all robots."""
     return {topic: range(len(sim.robots)) for topic in sim.sensors.by_topic}
 
 
-def drive(sim: Simulator, twist: Twist2D, seconds: float, topics: Iterable[str] = (), robot: int = 0) -> Iterator[Due]:
+def drive(sim, twist, seconds, topics=(), robot=0):
     """Command a robot's velocity at each step for a time [s]; what is due of these sensors of all robots, at its step.
 
     Nothing moves but while what this returns is iterated over.
@@ -72,12 +68,12 @@ def drive(sim: Simulator, twist: Twist2D, seconds: float, topics: Iterable[str] 
             yield due
 
 
-def driven(sim: Simulator, twist: Twist2D, seconds: float, topics: Iterable[str] = (), robot: int = 0) -> List[Due]:
+def driven(sim, twist, seconds, topics=(), robot=0):
     """What drive() yields, once all of it is over."""
     return list(drive(sim, twist, seconds, topics, robot))
 
 
-def analytic_distances(world: World, x: float, y: float, angles: np.ndarray, far: float) -> np.ndarray:
+def analytic_distances(world, x, y, angles, far):
     """Exact distances (n,) [m] from a point along world angles (n,) [rad] to upright boxes and cylinders.
 
     Shares no code with the simulator: slabs for boxes, a quadratic equation for cylinders.
@@ -99,7 +95,7 @@ def analytic_distances(world: World, x: float, y: float, angles: np.ndarray, far
     return np.where(best <= far, best, np.inf)
 
 
-def _slabs(ox: float, oy: float, dx: np.ndarray, dy: np.ndarray, half_x: float, half_y: float) -> np.ndarray:
+def _slabs(ox, oy, dx, dy, half_x, half_y):
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         tx = np.sort(np.stack([(-half_x - ox) / dx, (half_x - ox) / dx]), axis=0)
         ty = np.sort(np.stack([(-half_y - oy) / dy, (half_y - oy) / dy]), axis=0)
@@ -107,14 +103,14 @@ def _slabs(ox: float, oy: float, dx: np.ndarray, dy: np.ndarray, half_x: float, 
     return np.where((enter <= leave) & (enter > 0.0), enter, np.inf)
 
 
-def _circle(ox: float, oy: float, dx: np.ndarray, dy: np.ndarray, radius: float) -> np.ndarray:
+def _circle(ox, oy, dx, dy, radius):
     b, c = ox * dx + oy * dy, ox * ox + oy * oy - radius * radius
     root = b * b - c
     near = -b - np.sqrt(np.maximum(root, 0.0))
     return np.where((root >= 0.0) & (near > 0.0), near, np.inf)
 
 
-def lean(sim: Simulator, robot: int = 0) -> float:
+def lean(sim, robot=0):
     """Angle [rad] between a robot's mast and the vertical."""
     x, y, _, _ = sim.engine.body(robot).world_from_base.orientation
     return 2.0 * math.asin(min(1.0, math.hypot(x, y)))

@@ -3,8 +3,6 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
-from typing import Optional
 
 import numpy as np
 import pytest
@@ -32,7 +30,7 @@ ARRAYS = {
 
 
 @pytest.mark.parametrize("case", ARRAYS)
-def test_array_of_wrong_shape_type_or_layout_is_refused_by_name(case: str) -> None:
+def test_array_of_wrong_shape_type_or_layout_is_refused_by_name(case):
     array, message = ARRAYS[case]
     with pytest.raises(ValueError, match=message):
         compiled.address("footprints", array, (None, 3))
@@ -47,8 +45,8 @@ def test_array_of_wrong_shape_type_or_layout_is_refused_by_name(case: str) -> No
     ],
 )
 def test_library_that_is_missing_or_of_other_sources_is_refused_with_the_command_to_build_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, source: Optional[str], message: str
-) -> None:
+    tmp_path, monkeypatch, source, message
+):
     monkeypatch.setattr(compiled, "package_folders", [str(tmp_path)])
     if source is not None:
         command = ["cc", "-shared", "-fPIC", "-x", "c", "-", "-o", str(tmp_path / NAME)]
@@ -58,7 +56,7 @@ def test_library_that_is_missing_or_of_other_sources_is_refused_with_the_command
 
 
 @pytest.fixture(scope="module")
-def sanitized(tmp_path_factory: pytest.TempPathFactory) -> str:
+def sanitized(tmp_path_factory):
     """A folder with the libraries, built with the address and undefined-behaviour sanitizers."""
     folder = str(tmp_path_factory.mktemp("sanitized"))
     checks = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all"]
@@ -87,7 +85,7 @@ TESTS = (
 
 
 @pytest.mark.slow
-def test_sanitizers_report_nothing_in_the_tests_of_what_is_compiled(sanitized: str) -> None:
+def test_sanitizers_report_nothing_in_the_tests_of_what_is_compiled(sanitized):
     runtime = subprocess.run(["cc", "-print-file-name=libasan.so"], check=True, capture_output=True, text=True).stdout
     tests = [os.path.join(os.path.dirname(__file__), test) for test in TESTS]
     done = subprocess.run(

@@ -1,12 +1,11 @@
 """Gazebo's message types for packages of others, in compat/."""
 
 from pathlib import Path
-from typing import Dict
 
 from support import ROOT
 
 
-def _md5sums() -> Dict[str, str]:
+def _md5sums():
     """Type definition file -> md5sum, as computed by ROS's tools."""
     from genmsg import MsgContext, gentools, msg_loader
 
@@ -25,7 +24,7 @@ def _md5sums() -> Dict[str, str]:
     return md5sums
 
 
-def test_gazebo_types_have_the_md5sums_of_the_originals() -> None:
+def test_gazebo_types_have_the_md5sums_of_the_originals():
     assert _md5sums() == {
         "ContactState.msg": "48c0ffb054b8c444f870cecea1ee50d9",
         "ContactsState.msg": "acbcb1601a8e525bf72509f18e6f668d",

@@ -10,9 +10,7 @@ simulator_from = runpy.run_path(f"{ROOT}/compat/aro_sim/scripts/lab_simulator.py
 
 
 @pytest.mark.parametrize("given, labs", [("seed:=7", LAB), ("profile:=turtlebot3_gazebo odom_tf:=true", [])])
-def test_the_labs_behaviour_is_set_unless_a_profile_is_given(
-    monkeypatch: pytest.MonkeyPatch, given: str, labs: "list[str]"
-) -> None:
+def test_the_labs_behaviour_is_set_unless_a_profile_is_given(monkeypatch, given, labs):
     monkeypatch.setenv("ROBOCOP_SIM_ARGS", given)
     words = simulator_from(["world:=empty", "--", "-x", "1"])
     start = ["--no-summary", "aro_robocop_goto_as", "robocop_sim.launch", "world:=empty", "gazebo_services:=true"]

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Optional, Tuple
 
 import pytest
 
@@ -23,7 +23,7 @@ class Params:
     mode: str = parameter("free", choices=("free", "strict"))
     shown: bool = False
 
-    def conflicts(self) -> List[str]:
+    def conflicts(self):
         return ["count: expected 2 in mode strict"] if self.mode == "strict" and self.count != 2 else []
 
 
@@ -32,7 +32,7 @@ class Required:
     name: str = parameter()
 
 
-def test_groups_take_their_own_keys_without_a_prefix() -> None:
+def test_groups_take_their_own_keys_without_a_prefix():
     assert list(declared(Params)) == ["slow", "fast", "count", "mode", "shown"]
     assert from_dict(Params, {}, "x") == Params()
     assert from_dict(Params, {"fast": 2.5, "count": 3}, "x") == Params(Speeds(0.1, 2.5), 3)
@@ -40,7 +40,7 @@ def test_groups_take_their_own_keys_without_a_prefix() -> None:
         from_dict(Params, {"speeds": {"slow": 0.1}}, "x")
 
 
-def test_integer_is_accepted_for_a_float() -> None:
+def test_integer_is_accepted_for_a_float():
     slow = from_dict(Params, {"slow": 1}, "x").speeds.slow
     assert slow == 1.0 and isinstance(slow, float)
 
@@ -69,7 +69,7 @@ def test_integer_is_accepted_for_a_float() -> None:
         ),
     ],
 )
-def test_wrong_values_are_refused_all_at_once(raw: Dict[str, Any], expected: str) -> None:
+def test_wrong_values_are_refused_all_at_once(raw, expected):
     with pytest.raises(ParameterError) as refusal:
         from_dict(Params, raw, "sim.yaml")
     assert str(refusal.value) == f"sim.yaml: {expected}"
@@ -82,7 +82,7 @@ class Lists:
     wait: float = parameter(0.0, key="for")
 
 
-def test_lists_become_tuples_and_a_key_may_be_a_word_of_python() -> None:
+def test_lists_become_tuples_and_a_key_may_be_a_word_of_python():
     assert from_dict(Lists, {"place": [1, 0.5], "names": ["a"], "for": 2}, "x") == Lists((1.0, 0.5), ("a",), 2.0)
     assert from_dict(Lists, {}, "x") == Lists() and list(declared(Lists)) == ["place", "names", "for"]
 
@@ -98,12 +98,12 @@ def test_lists_become_tuples_and_a_key_may_be_a_word_of_python() -> None:
         ({"wait": 1.0}, "wait: unknown parameter; known are: for, names, place"),
     ],
 )
-def test_wrong_lists_are_refused(raw: Dict[str, Any], expected: str) -> None:
+def test_wrong_lists_are_refused(raw, expected):
     with pytest.raises(ParameterError) as refusal:
         from_dict(Lists, raw, "plan.yaml")
     assert str(refusal.value) == f"plan.yaml: {expected}"
 
 
-def test_key_without_a_default_is_required() -> None:
+def test_key_without_a_default_is_required():
     with pytest.raises(ParameterError, match="^x: name: missing, expected a text$"):
         from_dict(Required, {}, "x")

@@ -1,7 +1,7 @@
 """The profiles in config/profiles: limits, scanners, topics and cameras of Gazebo's and of real robots."""
 
 import os
-from typing import Any, Callable, Dict
+from typing import Callable
 
 import numpy as np
 import pytest
@@ -19,13 +19,13 @@ Make = Callable[..., Simulator]
 TICK = 0.001533981  # [rad] of a TurtleBot3's encoders
 
 
-def _profile(name: str) -> Dict[str, Any]:
+def _profile(name):
     with open(os.path.join(ROOT, "config", "profiles", name + ".yaml")) as stream:
-        values: Dict[str, Any] = yaml.safe_load(stream)
+        values = yaml.safe_load(stream)
     return values
 
 
-def _params(name: str, **given: Any) -> SimParams:
+def _params(name, **given):
     return from_dict(SimParams, {**_profile(name), **given}, name)
 
 
@@ -39,11 +39,11 @@ def _params(name: str, **given: Any) -> SimParams:
         ("real", "turtlebot2", (1.5, 6.6, 1.0, 2.0, 0.6)),
     ],
 )
-def test_a_profile_sets_limits_and_command_timeout(profile: str, model: str, expected: "tuple[float, ...]") -> None:
+def test_a_profile_sets_limits_and_command_timeout(profile, model, expected):
     assert limits_from(_params(profile).limits, model_named(model).figures) == expected
 
 
-def test_turtlebot3_gazebo_profile_has_its_scanner_localization_and_cameras() -> None:
+def test_turtlebot3_gazebo_profile_has_its_scanner_localization_and_cameras():
     p = _params("turtlebot3_gazebo")
     lidar = p.sensors.lidar.profile()
     assert (lidar.rate, lidar.samples, lidar.range_min, lidar.range_max) == (5, 360, 0.12, 3.5)
@@ -58,7 +58,7 @@ def test_turtlebot3_gazebo_profile_has_its_scanner_localization_and_cameras() ->
     assert SimParams().sensors.camera.spec("turtlebot3_waffle").width == 160
 
 
-def test_turtlebot3_gazebo_profile_runs(simulator: Make) -> None:
+def test_turtlebot3_gazebo_profile_runs(simulator):
     sim = simulator("stage_1", Pose2D(0.5, 0.0), **_profile("turtlebot3_gazebo"))
     samples, scans = [], []
     for due in drive(sim, STANDSTILL, 1.0, everything(sim)):
@@ -69,7 +69,7 @@ def test_turtlebot3_gazebo_profile_runs(simulator: Make) -> None:
     assert len(scans) == 5 and not np.isinf(scans[0]).any()
 
 
-def test_real_profile_has_an_lds01_and_the_rates_of_a_turtlebot3(simulator: Make) -> None:
+def test_real_profile_has_an_lds01_and_the_rates_of_a_turtlebot3(simulator):
     assert _params("real").sensors.lidar.profile().range_max == 3.5
     assert _params("real").topics.covariances == "real"
     sim = simulator("stage_1", **_profile("real"))
@@ -78,7 +78,7 @@ def test_real_profile_has_an_lds01_and_the_rates_of_a_turtlebot3(simulator: Make
     assert {topic: sum(bool(due.of(topic)) for due in seen) for topic in expected} == expected
 
 
-def test_the_real_profiles_encoders_count_ticks(simulator: Make) -> None:
+def test_the_real_profiles_encoders_count_ticks(simulator):
     sim = simulator("empty", **_profile("real"))
     driven(sim, Twist2D(0.1, 0.5), 1.0, ["joint_states", "odom"])
     angles = sim.sensors.joints.angles[0] / TICK

@@ -5,7 +5,7 @@ import pytest
 from aro_robocop_goto_as.reading import finite_numbers
 
 
-def test_numbers_are_finite_and_as_many_as_expected() -> None:
+def test_numbers_are_finite_and_as_many_as_expected():
     assert finite_numbers(" 1 -2e-1\t+.5 3. ", 4) == (1.0, -0.2, 0.5, 3.0)
     for text in ("1 2", "nan", "inf", "1e999", "1_000", "infinity", "", "1,5", "0x10"):
         with pytest.raises(ValueError, match="^expected one finite number$"):

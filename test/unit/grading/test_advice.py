@@ -13,12 +13,12 @@ from robocop_grading.advice import AUTO_START, WALL_ALARM, WALL_SLEEP, advice
         "import actionlib as al; al.SimpleActionServer('a', A, self.execute, auto_start=True)",
     ],
 )
-def test_server_that_starts_inside_its_constructor_is_named(code: str) -> None:
+def test_server_that_starts_inside_its_constructor_is_named(code):
     assert advice(code) == [f"line 1: {AUTO_START}"]
 
 
 @pytest.mark.parametrize("begin, sleep", [("import time", "time.sleep"), ("from time import sleep as s", "s")])
-def test_sleeping_on_the_wall_clock_is_named_once_with_its_first_line(begin: str, sleep: str) -> None:
+def test_sleeping_on_the_wall_clock_is_named_once_with_its_first_line(begin, sleep):
     assert advice(f"{begin}\nwhile True:\n    {sleep}(0.1)\n    {sleep}(1)") == [f"line 3: {WALL_SLEEP}"]
 
 
@@ -26,7 +26,7 @@ def test_sleeping_on_the_wall_clock_is_named_once_with_its_first_line(begin: str
     "code",
     ["signal.alarm(1)", "from signal import alarm; alarm(1)", "from signal import *; setitimer(ITIMER_REAL, 0.1, 0.1)"],
 )
-def test_signals_by_the_wall_clock_are_named(code: str) -> None:
+def test_signals_by_the_wall_clock_are_named(code):
     assert advice(code) == [f"line 1: {WALL_ALARM}"]
 
 
@@ -46,5 +46,5 @@ def test_signals_by_the_wall_clock_are_named(code: str) -> None:
         "a" + ".b" * 5_000 + "()",
     ],
 )
-def test_nothing_is_said_of_other_code(code: str) -> None:
+def test_nothing_is_said_of_other_code(code):
     assert advice(code) == []

@@ -10,20 +10,19 @@ import pytest
 from grading_records import PLAN, RIGHT, graded
 
 from robocop_grading import cli, faults
-from robocop_grading.checks import CHECKS, Verdict
+from robocop_grading.checks import CHECKS
 from robocop_grading.checks.consequences import FOLLOWS
-from robocop_grading.handout import Limits
 from robocop_grading.judge import judge
 from robocop_grading.record import Record
 from robocop_grading.report.write import write
 
 
-def test_exception_in_a_check_costs_no_points_of_other_scenarios_and_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_exception_in_a_check_costs_no_points_of_other_scenarios_and_is_told(monkeypatch):
     check = CHECKS["reaches_goal"]
     expected = graded(RIGHT, Record("right", "server"))
 
     @functools.wraps(check.judge)
-    def raises_in_right(record: Record, limits: Limits) -> Verdict:
+    def raises_in_right(record, limits):
         return {"left": check(record, limits)}[record.name]
 
     monkeypatch.setitem(CHECKS, "reaches_goal", replace(check, judge=raises_in_right))
@@ -33,8 +32,8 @@ def test_exception_in_a_check_costs_no_points_of_other_scenarios_and_is_told(mon
     assert "KeyError: 'right'" in grade.tracebacks[0] and "raises_in_right" in grade.tracebacks[0]
 
 
-def test_exception_in_a_cause_or_in_the_table_leaves_every_outcome_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    def raises(*_: object) -> bool:
+def test_exception_in_a_cause_or_in_the_table_leaves_every_outcome_as_it_was(monkeypatch):
+    def raises(*_):
         raise ZeroDivisionError
 
     unfinished = Record("left", "server", goals=RIGHT.goals, samples=RIGHT.samples)
@@ -48,14 +47,12 @@ def test_exception_in_a_cause_or_in_the_table_leaves_every_outcome_as_it_was(mon
     assert "ZeroDivisionError" in grade.tracebacks[0] and any("the grader failed at" in it for it in grade.problems)
 
 
-def test_traceback_is_written_beside_the_report(tmp_path: Path) -> None:
+def test_traceback_is_written_beside_the_report(tmp_path):
     write(replace(graded(RIGHT), tracebacks=("Traceback: one", "Traceback: two")), PLAN, {}, tmp_path)
     assert (tmp_path / "traceback.txt").read_text() == "Traceback: one\nTraceback: two"
 
 
-def test_grade_that_ends_with_an_exception_names_the_file_with_its_traceback(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_grade_that_ends_with_an_exception_names_the_file_with_its_traceback(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("sys.argv", ["grade", "anna.py", "--report", str(tmp_path)])
     monkeypatch.setattr(cli, "load", lambda *_: {}["missing"])
     with pytest.raises(SystemExit, match=str(cli.NO_GRADE)):
@@ -66,7 +63,7 @@ def test_grade_that_ends_with_an_exception_names_the_file_with_its_traceback(
     assert "KeyError: 'missing'" in Path(file).read_text()
 
 
-def test_sources_that_change_while_they_are_in_use_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sources_that_change_while_they_are_in_use_are_named(tmp_path, monkeypatch):
     monkeypatch.setattr(faults, "SOURCES", tmp_path)
     (tmp_path / "module.py").touch()
     os.utime(tmp_path / "module.py", (0.0, faults.STARTED - 1.0))

@@ -4,40 +4,38 @@ import itertools
 import math
 import random
 from dataclasses import replace
-from typing import Any, Callable, Dict, Sequence
 
 import pytest
 from grading_records import RIGHT, graded
 
 from robocop_grading import record as rec
-from robocop_grading.grades import CheckOutcome, Grade
-from robocop_grading.record import Record
+from robocop_grading.grades import CheckOutcome
 
 SCENARIOS = ("left", "far")
 RAISED = rec.Line(5.0, "[ERROR] Exception in your execute callback: division by zero")
 
 
-def told(change: Callable[[rec.Feedback], rec.Feedback]) -> Callable[[Record], Record]:
+def told(change):
     """A mistake in each feedback message."""
     return lambda record: replace(record, feedback=tuple(map(change, record.feedback)))
 
 
-def commanded(change: Callable[[rec.Command], rec.Command]) -> Callable[[Record], Record]:
+def commanded(change):
     """A mistake in each command."""
     return lambda record: replace(record, commands=tuple(map(change, record.commands)))
 
 
-def ended(**fields: Any) -> Callable[[Record], Record]:
+def ended(**fields):
     """A mistake in the result."""
 
-    def change(record: Record) -> Record:
+    def change(record):
         results = tuple(replace(it, **fields) for it in record.results)
         return replace(record, results=results, statuses=tuple(rec.Status(it.time, it.id, it.status) for it in results))
 
     return change
 
 
-MISTAKES: Dict[str, Callable[[Record], Record]] = {
+MISTAKES = {
     "drives first": commanded(lambda it: replace(it, v=0.16) if it.time < 1.0 else it),
     "turns away": commanded(lambda it: replace(it, w=-it.w)),
     "never turns": commanded(lambda it: replace(it, w=0.0)),
@@ -65,7 +63,7 @@ MISTAKES: Dict[str, Callable[[Record], Record]] = {
 OTHERS = [name for number, name in enumerate(MISTAKES) if number % 3]
 
 
-def grade_of(names: Sequence[str]) -> Grade:
+def grade_of(names):
     record = RIGHT
     for name in names:
         record = MISTAKES[name](record)
@@ -73,16 +71,16 @@ def grade_of(names: Sequence[str]) -> Grade:
 
 
 @pytest.fixture(scope="module")
-def alone() -> Dict[str, Grade]:
+def alone():
     return {name: grade_of([name]) for name in MISTAKES}
 
 
-def possible(names: Sequence[str]) -> bool:
+def possible(names):
     """Return whether these mistakes do not exclude each other: a robot that drives on does not stand at the goal."""
     return not {"never stops", "ends late"} <= set(names)
 
 
-def expect_explained(grade: Grade, alone: Sequence[Grade]) -> None:
+def expect_explained(grade, alone):
     """The report of several mistakes, beside that of each of them alone."""
     assert not grade.tracebacks and grade.mistakes
     lost = {check.name for check in grade.checks if check.outcome is not CheckOutcome.PASSED}
@@ -94,14 +92,14 @@ def expect_explained(grade: Grade, alone: Sequence[Grade]) -> None:
 
 # A third of them with each run, all with --all.
 @pytest.mark.parametrize("first", [*list(MISTAKES)[::3], *(pytest.param(it, marks=pytest.mark.slow) for it in OTHERS)])
-def test_report_of_two_mistakes_names_only_what_they_explain(first: str, alone: Dict[str, Grade]) -> None:
+def test_report_of_two_mistakes_names_only_what_they_explain(first, alone):
     for names in filter(possible, itertools.combinations(MISTAKES, 2)):
         if names[0] == first:
             expect_explained(grade_of(names), [alone[name] for name in names])
 
 
 @pytest.mark.slow
-def test_report_of_three_mistakes_names_only_what_they_explain(alone: Dict[str, Grade]) -> None:
+def test_report_of_three_mistakes_names_only_what_they_explain(alone):
     triples = list(filter(possible, itertools.combinations(MISTAKES, 3)))
     for names in random.Random(0).sample(triples, 200):
         expect_explained(grade_of(names), [alone[name] for name in names])

@@ -3,7 +3,6 @@
 import dataclasses
 import math
 import re
-from pathlib import Path
 
 import pytest
 import yaml
@@ -20,18 +19,18 @@ from robocop_grading.plan_file import load
 from robocop_grading.scenarios import BRIDGE_SCENARIOS, MAX_SEED, SCRIPTS, START, Block
 
 
-def test_plan_has_points_for_both_parts_and_a_function_for_each_check() -> None:
+def test_plan_has_points_for_both_parts_and_a_function_for_each_check():
     points = {part: sum(it.points for it in PLAN.checks if it.part == part and not it.extra) for part in PARTS}
     assert all(points.values()) and PLAN.points == pytest.approx(sum(points.values()))
     assert {check.name for check in PLAN.checks} == set(CHECKS)
 
 
-def test_each_check_examines_scenarios_of_its_part() -> None:
+def test_each_check_examines_scenarios_of_its_part():
     known = {"server": {START, *SCRIPTS}, "bridge": {*BRIDGE_SCENARIOS}}
     assert all({*check.scenarios} <= known[check.part] for check in CHECKS.values())
 
 
-def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None:
+def test_the_plan_documents_every_limit_with_its_default_and_sets_none():
     section = PLAN_FILE.read_text().partition("limits:\n")[2].partition("\n\n")[0].splitlines()
     lines = [re.fullmatch(r"  #(\w+): (\S+) +# \S.*", line) for line in section]
     assert all(lines) and yaml.safe_load(PLAN_FILE.read_text())["limits"] is None
@@ -51,7 +50,7 @@ def test_the_plan_documents_every_limit_with_its_default_and_sets_none() -> None
         ("packages:", "packages: {pypi: [--index-url=http://here]}", "expected the name of a package, got '--index"),
     ],
 )
-def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, error: str) -> None:
+def test_a_mistake_in_the_plan_is_refused(tmp_path, old, new, error):
     text = PLAN_FILE.read_text()
     assert old in text
     (tmp_path / "plan.yaml").write_text(text.replace(old, new))
@@ -59,14 +58,14 @@ def test_a_mistake_in_the_plan_is_refused(tmp_path: Path, old: str, new: str, er
         load(tmp_path / "plan.yaml")
 
 
-def test_outline_of_a_block_is_that_of_its_shape_where_it_stands() -> None:
+def test_outline_of_a_block_is_that_of_its_shape_where_it_stands():
     box = Block(Pose2D(1.0, 2.0, math.pi / 2.0), Box((0.4, 0.2, 0.5))).outline
     circle = Block(Pose2D(1.0, 2.0), Cylinder(0.3, 0.5)).outline
     assert box == (0.9, 2.2, 0.9, 1.8, 1.1, 1.8, 1.1, 2.2)
     assert {round(math.hypot(x - 1.0, y - 2.0), 3) for x, y in zip(circle[::2], circle[1::2])} == {0.3}
 
 
-def test_plan_names_packages_of_the_lab(tmp_path: Path) -> None:
+def test_plan_names_packages_of_the_lab(tmp_path):
     lists = "packages: {debian: [python3-scipy, g++], pypi: ['numpy-stl==3.1', filterpy]}"
     (tmp_path / "plan.yaml").write_text(PLAN_FILE.read_text().replace("packages:", lists))
     assert load(tmp_path / "plan.yaml").packages == Packages(("python3-scipy", "g++"), ("numpy-stl==3.1", "filterpy"))
@@ -74,7 +73,7 @@ def test_plan_names_packages_of_the_lab(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("seed", [1, 2, MAX_SEED])
-def test_every_scenario_of_the_plan_differs_from_its_middle_and_is_repeatable(seed: int) -> None:
+def test_every_scenario_of_the_plan_differs_from_its_middle_and_is_repeatable(seed):
     chosen = load(PLAN_FILE, seed)
     assert chosen == load(PLAN_FILE, seed)
     drawn_by_name = {scenario.name: scenario for scenario in chosen.scenarios}
@@ -84,12 +83,12 @@ def test_every_scenario_of_the_plan_differs_from_its_middle_and_is_repeatable(se
 
 
 @pytest.mark.parametrize("seed", [1, MAX_SEED])
-def test_seed_draws_the_order_of_the_scenarios_after_the_first_one(seed: int) -> None:
+def test_seed_draws_the_order_of_the_scenarios_after_the_first_one(seed):
     names, drawn_names = ([scenario.name for scenario in load(PLAN_FILE, it).scenarios] for it in (0, seed))
     assert sorted(names) == sorted(drawn_names) and names[0] == drawn_names[0] and names != drawn_names
 
 
 @pytest.mark.parametrize("seed", [-1, MAX_SEED + 1])
-def test_seed_out_of_bounds_is_refused(seed: int) -> None:
+def test_seed_out_of_bounds_is_refused(seed):
     with pytest.raises(PlanError, match=f"--seed {seed}: expected a number from 0 to {MAX_SEED}"):
         load(PLAN_FILE, seed)

@@ -12,7 +12,6 @@ from robocop_grading.classroom.results import StoredGrade
 from robocop_grading.classroom.table import table
 from robocop_grading.cli import as_text, progress
 from robocop_grading.grades import CheckOutcome, CheckResult, Grade, completed
-from robocop_grading.plan import Plan
 from robocop_grading.report.write import as_classroom, as_gradescope, as_json, write
 from robocop_grading.scenarios import BRIDGE_SCENARIOS
 
@@ -21,12 +20,12 @@ FORWARDS = CheckResult("forwards_goal", "bridge", "A click is a goal.", CheckOut
 FRAME = CheckResult("goal_frame", "bridge", "Frames are transformed.", CheckOutcome.PASSED, 1.0, 1.0, True)
 
 
-def failed(check: CheckResult) -> CheckResult:
+def failed(check):
     """The check, failed."""
     return replace(check, outcome=CheckOutcome.FAILED, points=0.0, failure=MISTAKE)
 
 
-def blocked(check: CheckResult, by: CheckResult) -> CheckResult:
+def blocked(check, by):
     """The check, not reached because another one failed."""
     return replace(check, outcome=CheckOutcome.NOT_REACHED, points=0.0, follows=by.name, why="no goal")
 
@@ -42,7 +41,7 @@ def blocked(check: CheckResult, by: CheckResult) -> CheckResult:
         ((), "nothing was judged"),
     ],
 )
-def test_extra_points_are_told_apart_from_the_others(checks, words, tmp_path) -> None:
+def test_extra_points_are_told_apart_from_the_others(checks, words, tmp_path):
     grade = Grade("anna", checks)
     assert grade.words == words
     assert as_text(grade, {}).splitlines()[-1] == f"anna: {words}"
@@ -65,19 +64,19 @@ def test_extra_points_are_told_apart_from_the_others(checks, words, tmp_path) ->
         ((failed(replace(FORWARDS, points_available=0.0)),), "0 points"),
     ],
 )
-def test_cost_of_a_mistake_names_extra_points_apart(checks, cost, tmp_path) -> None:
+def test_cost_of_a_mistake_names_extra_points_apart(checks, cost, tmp_path):
     grade = Grade("anna", checks)
     assert [mistake.cost for mistake in grade.mistakes] == [cost]
     write(grade, PLAN, {}, tmp_path)
     assert re.search(f"costs {cost}<", (tmp_path / "report.html").read_text())
 
 
-def test_mistake_that_costs_only_an_extra_point_is_fixed_last() -> None:
+def test_mistake_that_costs_only_an_extra_point_is_fixed_last():
     grade = Grade("anna", (failed(replace(FRAME, points_available=3.0)), failed(FORWARDS)))
     assert [mistake.check.name for mistake in grade.mistakes] == ["forwards_goal", "goal_frame"]
 
 
-def test_every_list_marks_extra_checks_and_adds_up_the_others_only() -> None:
+def test_every_list_marks_extra_checks_and_adds_up_the_others_only():
     text = as_text(
         Grade("anna", (failed(FORWARDS), blocked(replace(FORWARDS, name="b"), FORWARDS), blocked(FRAME, FORWARDS))), {}
     )
@@ -90,7 +89,7 @@ def test_every_list_marks_extra_checks_and_adds_up_the_others_only() -> None:
         assert "Frames are transformed. (extra)" in str(listed)
 
 
-def test_part_that_is_not_handed_in_counts_the_same_in_every_report(tmp_path) -> None:
+def test_part_that_is_not_handed_in_counts_the_same_in_every_report(tmp_path):
     server = [it for it in PLAN.checks if it.part == "server"]
     checks = [CheckResult(it.name, "server", "", CheckOutcome.PASSED, it.points, it.points, it.extra) for it in server]
     grade = completed(Grade("anna", tuple(checks)), PLAN)
@@ -109,8 +108,8 @@ def test_part_that_is_not_handed_in_counts_the_same_in_every_report(tmp_path) ->
     assert row.startswith(f"anna,{server},{PLAN.points},0.0,{server},not handed in,")
 
 
-def test_progress_counts_the_scenarios_of_the_parts_that_are_graded(capsys) -> None:
-    def told(plan: Plan, *parts: str) -> str:
+def test_progress_counts_the_scenarios_of_the_parts_that_are_graded(capsys):
+    def told(plan, *parts):
         for part in parts:
             progress(plan, parts)(part, plan.scenarios_of(part)[-1])
         return capsys.readouterr().err

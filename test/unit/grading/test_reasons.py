@@ -1,7 +1,5 @@
 """What follows from what: the table has rows for known checks, and whatever fails begins with some check."""
 
-from typing import Dict, List
-
 import pytest
 from grading_records import PLAN, RIGHT
 from hypothesis import given
@@ -16,7 +14,7 @@ from robocop_grading.reasons import first_reasons, reasons_of
 SERVER = [check.name for check in PLAN.checks if check.part == "server"]
 
 
-def begins_with_itself(reasons: Dict[str, List[str]]) -> bool:
+def begins_with_itself(reasons):
     """Return whether each check's first reason is one of those that it leads to, and has itself as its first one."""
     first = first_reasons(reasons)
     return all(first[first[name]] == first[name] for name in reasons)
@@ -34,20 +32,18 @@ def begins_with_itself(reasons: Dict[str, List[str]]) -> bool:
         ),
     ],
 )
-def test_failure_begins_with(reasons: Dict[str, List[str]], first: str) -> None:
+def test_failure_begins_with(reasons, first):
     assert first_reasons(reasons) == dict(zip(reasons, first))
 
 
-def test_rows_name_checks_and_no_row_has_a_check_follow_from_itself_only() -> None:
+def test_rows_name_checks_and_no_row_has_a_check_follow_from_itself_only():
     for row in FOLLOWS:
         assert {*row.later.split(), row.earlier} <= {*CHECKS}, row
         assert row.later != row.earlier, row
 
 
 @given(st.permutations(SERVER), st.data())
-def test_whatever_subset_of_the_tables_rows_applies_each_failure_begins_with_some_check(
-    order: List[str], data: st.DataObject
-) -> None:
+def test_whatever_subset_of_the_tables_rows_applies_each_failure_begins_with_some_check(order, data):
     failed = data.draw(st.sets(st.sampled_from(order), min_size=1))
     rows = data.draw(st.sets(st.sampled_from(range(len(FOLLOWS)))))
     reasons = {
@@ -63,7 +59,7 @@ def test_whatever_subset_of_the_tables_rows_applies_each_failure_begins_with_som
 
 
 @given(st.dictionaries(st.sampled_from(SERVER), st.sampled_from(Kind), min_size=1))
-def test_whatever_kinds_of_failures_there_are_each_begins_with_some_check(kinds: Dict[str, Kind]) -> None:
+def test_whatever_kinds_of_failures_there_are_each_begins_with_some_check(kinds):
     goal = RIGHT.goals[0]
     failures = {name: Failed("", "", 3.0, name, kinds[name], goal) for name in SERVER if name in kinds}
     where = dict.fromkeys(failures, RIGHT)

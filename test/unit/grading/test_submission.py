@@ -1,7 +1,5 @@
 """What is said of a submission before it runs."""
 
-from pathlib import Path
-
 import pytest
 from hosted_packages import tree
 
@@ -13,30 +11,26 @@ NAME = "robocop_goto_as.py"
 SERVER = "import rospy\nrospy.init_node('lab')\nactionlib.SimpleActionServer('robocop_goto_as')\n"
 
 
-def prepared(top: Path) -> submission.Submission:
+def prepared(top):
     return submission.prepare_submission(str(top), top, top, top, None)
 
 
 @pytest.mark.parametrize("other", [SERVER, "import rospy)\n"])
-def test_second_version_of_a_script_is_named_as_not_graded(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, other: str
-) -> None:
+def test_second_version_of_a_script_is_named_as_not_graded(tmp_path, monkeypatch, other):
     monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
     for name, code in (("robocop_goto_as.py", SERVER), ("robocop_goto_as_final.py", other), ("tools.py", "")):
         (tmp_path / name).write_text(code)
     assert "server: robocop_goto_as.py is graded, but not robocop_goto_as_final.py" in prepared(tmp_path).notes
 
 
-def test_script_of_a_single_file_or_without_a_launch_file_gets_no_arguments_of_roslaunch(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_script_of_a_single_file_or_without_a_launch_file_gets_no_arguments_of_roslaunch(tmp_path, monkeypatch):
     monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
     (tmp_path / "robocop_goto_as.py").write_text(SERVER)
     (script,) = prepared(tmp_path).scripts
     assert script.command()[-1] == str(tmp_path / "robocop_goto_as.py")
 
 
-def test_script_outside_of_the_package_is_named_as_not_graded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_script_outside_of_the_package_is_named_as_not_graded(tmp_path, monkeypatch):
     files = {"lab/package.xml": "<package><name>lab</name></package>", f"lab/{NAME}": SERVER, NAME: f"{SERVER}# done\n"}
     tree(tmp_path, files)
     empty = submission.Submission("lab", (), {}, [])
@@ -45,10 +39,8 @@ def test_script_outside_of_the_package_is_named_as_not_graded(tmp_path: Path, mo
 
 
 @pytest.mark.parametrize("launch, reason", [(False, "nothing to start"), (True, "Could not find roscpp")])
-def test_hand_in_in_cpp_is_told_so_before_what_is_missing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, launch: bool, reason: str
-) -> None:
-    def build(*_: object) -> None:
+def test_hand_in_in_cpp_is_told_so_before_what_is_missing(tmp_path, monkeypatch, launch, reason):
+    def build(*_):
         raise HostingError(reason)
 
     monkeypatch.setattr(submission, "build", build)
@@ -60,7 +52,7 @@ def test_hand_in_in_cpp_is_told_so_before_what_is_missing(
         prepared(tmp_path)
 
 
-def test_two_packages_of_the_same_name_may_be_a_class(tmp_path: Path) -> None:
+def test_two_packages_of_the_same_name_may_be_a_class(tmp_path):
     for name in ("anna", "ben"):
         tree(tmp_path / name, {"package.xml": "<package><name>lab</name></package>", "robocop_goto_as.py": SERVER})
     with pytest.raises(HostingError, match="2 packages found.*; is this folder a class"):
@@ -68,9 +60,7 @@ def test_two_packages_of_the_same_name_may_be_a_class(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("more, expected", [("Subscriber('/move_base_simple/goal')\n", 1), ("# move_base_simple\n", 0)])
-def test_bridge_in_the_servers_script_is_not_graded_without_a_word(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, more: str, expected: int
-) -> None:
+def test_bridge_in_the_servers_script_is_not_graded_without_a_word(tmp_path, monkeypatch, more, expected):
     monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
     (tmp_path / "lab.py").write_text(SERVER + more)
     assert sum("lab.py has a bridge, too" in note for note in prepared(tmp_path).notes) == expected

@@ -1,13 +1,12 @@
 """Launch files, read by roslaunch's own loader."""
 
 import os
-from pathlib import Path
 
 import pytest
 from hosted_packages import tree
 
 from robocop_hosting.errors import HostingError
-from robocop_hosting.launch_file import LaunchFile, read
+from robocop_hosting.launch_file import read
 from robocop_hosting.workspace import run_plain
 
 # 10 to the power of 8 values in nine lines.
@@ -15,15 +14,15 @@ ALIASES = "\n".join(["a0: &amp;a0 [0]", *(f"a{n}: &amp;a{n} [{', '.join([f'*a{n 
 NODE = '<node pkg="lab" type="a.py" name="a"'
 
 
-def loaded(top: Path, *arguments: str) -> LaunchFile:
+def loaded(top, *arguments):
     return read(top / "launch" / "x.launch", top, dict(os.environ), run_plain, arguments)
 
 
-def written(top: Path, text: str) -> Path:
+def written(top, text):
     return tree(top, {"launch/x.launch": f"<launch>\n{text}\n</launch>"})
 
 
-def test_node_has_all_that_roslaunch_resolves(tmp_path: Path) -> None:
+def test_node_has_all_that_roslaunch_resolves(tmp_path):
     inner = """<launch><arg name="speed"/>
       <node pkg="lab" type="a.py" name="a" args="--speed $(arg speed) 'two words'" cwd="node">
       <remap from="odom_in" to="/odom"/><param name="gain" value="2.5"/><env name="LEVEL" value="3"/></node></launch>"""
@@ -64,17 +63,17 @@ def test_node_has_all_that_roslaunch_resolves(tmp_path: Path) -> None:
         ('<include file="$(dirname)/none.launch"/>', "line 2: .*No such file or directory.* .in launch/none.launch"),
     ],
 )
-def test_mistake_is_named_with_its_file_and_line(tmp_path: Path, text: str, reason: str) -> None:
+def test_mistake_is_named_with_its_file_and_line(tmp_path, text, reason):
     written(tmp_path, text)
     os.mkfifo(tmp_path / "launch" / "pipe")
     with pytest.raises(HostingError, match=reason):
         loaded(tmp_path)
 
 
-def test_parameters_of_a_file_may_refer_to_one_another(tmp_path: Path) -> None:
+def test_parameters_of_a_file_may_refer_to_one_another(tmp_path):
     text = "<rosparam>\na: &amp;gains [1.5, 2.0]\nb: *gains\n</rosparam>"
     assert loaded(written(tmp_path, text)).parameters == {"/a": [1.5, 2.0], "/b": [1.5, 2.0]}
 
 
-def test_tag_that_roslaunch_does_not_know_is_named(tmp_path: Path) -> None:
+def test_tag_that_roslaunch_does_not_know_is_named(tmp_path):
     assert loaded(written(tmp_path, "<nod/>")).warnings == ["launch/x.launch: unrecognized tag nod"]

@@ -1,8 +1,6 @@
 """Hosted packages: found at a path."""
 
 import os
-from pathlib import Path
-from typing import Dict
 
 import pytest
 from hosted_packages import LAB, MANIFEST, tree
@@ -12,7 +10,7 @@ from robocop_hosting.package import find_package, read_launch_plan
 from robocop_hosting.workspace import run_plain
 
 
-def test_package_is_found_from_its_folder_or_its_workspace(tmp_path: Path) -> None:
+def test_package_is_found_from_its_folder_or_its_workspace(tmp_path):
     tree(tmp_path, {f"src/{name}/package.xml": MANIFEST.format(name) for name in (LAB, "tools")})
     tree(tmp_path, {f"src/{LAB}/scripts/robocop_goto_as.py": "", "build/x/package.xml": "<package/>"})
     for path in ("", "src", f"src/{LAB}"):
@@ -28,7 +26,7 @@ WORKSPACE = {
 }
 
 
-def workspace(top: Path) -> Path:
+def workspace(top):
     """The lab's package beside others, among them ones that are not to be built, in the folder src of a workspace."""
     for name, lines in {
         **WORKSPACE,
@@ -40,25 +38,25 @@ def workspace(top: Path) -> Path:
     return tree(top, {"src/ignored/CATKIN_IGNORE": "", f"src/{LAB}/scripts/robocop_goto_as.py": ""})
 
 
-def test_of_packages_beside_it_those_are_graded_with_it_on_which_it_depends(tmp_path: Path) -> None:
+def test_of_packages_beside_it_those_are_graded_with_it_on_which_it_depends(tmp_path):
     package = find_package(str(workspace(tmp_path)))
     assert package.sources == {name: tmp_path / "src" / name for name in (LAB, "maths", "units")}
     assert list(find_package(str(tmp_path / "src" / LAB)).sources) == [LAB], "nothing outside of the hand-in"
 
 
 @pytest.mark.parametrize("path", ["", f"src/{LAB}"])
-def test_package_is_run_with_its_whole_workspace_but_for_what_is_here_already(tmp_path: Path, path: str) -> None:
+def test_package_is_run_with_its_whole_workspace_but_for_what_is_here_already(tmp_path, path):
     package = find_package(str(workspace(tmp_path) / path), grades=False)
     assert package.sources == {name: tmp_path / "src" / name for name in WORKSPACE}
 
 
 @pytest.mark.parametrize("name", ["lab_drive", "aro_sim"])
-def test_only_package_is_taken_whatever_its_name_is(tmp_path: Path, name: str) -> None:
+def test_only_package_is_taken_whatever_its_name_is(tmp_path, name):
     tree(tmp_path, {"src/it/package.xml": MANIFEST.format(name), "src/it/x.launch": "<launch/>"})
     assert find_package(str(tmp_path), grades=False).sources == {name: tmp_path / "src" / "it"}
 
 
-def test_script_is_guessed_beside_several_launch_files_only_to_be_graded(tmp_path: Path) -> None:
+def test_script_is_guessed_beside_several_launch_files_only_to_be_graded(tmp_path):
     files = {f"launch/{name}.launch": "<launch/>" for name in "ab"}
     tree(tmp_path, {**files, "package.xml": MANIFEST.format("lab"), "scripts/watch.py": "'move_base_simple'"})
     assert find_package(str(tmp_path)).launch_file is None
@@ -76,9 +74,7 @@ def test_script_is_guessed_beside_several_launch_files_only_to_be_graded(tmp_pat
         ({f"{LAB}/robocop_goto_as.launch": "", "b/y.launch": ""}, "", LAB),
     ],
 )
-def test_of_several_packages_the_only_one_that_has_what_is_asked_for_is_taken(
-    tmp_path: Path, files: Dict[str, str], launch: str, expected: str
-) -> None:
+def test_of_several_packages_the_only_one_that_has_what_is_asked_for_is_taken(tmp_path, files, launch, expected):
     names = {file.partition("/")[0] for file in files}
     tree(tmp_path, {**files, **{f"{name}/package.xml": MANIFEST.format(name) for name in names}})
     assert find_package(str(tmp_path), launch).name == expected
@@ -120,12 +116,12 @@ def test_of_several_packages_the_only_one_that_has_what_is_asked_for_is_taken(
         ),
     ],
 )
-def test_folder_without_a_package_to_start_is_refused(tmp_path: Path, files: Dict[str, str], expected: str) -> None:
+def test_folder_without_a_package_to_start_is_refused(tmp_path, files, expected):
     with pytest.raises(HostingError, match=expected):
         find_package(str(tree(tmp_path, files)))
 
 
-def test_missing_path_is_refused() -> None:
+def test_missing_path_is_refused():
     with pytest.raises(HostingError, match="/no/such/place: expected the folder of a catkin package"):
         find_package("/no/such/place")
 
@@ -133,7 +129,7 @@ def test_missing_path_is_refused() -> None:
 PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
 
 
-def test_launch_file_is_the_named_one_else_the_labs_else_the_only_one(tmp_path: Path) -> None:
+def test_launch_file_is_the_named_one_else_the_labs_else_the_only_one(tmp_path):
     tree(tmp_path, PAIR)
     assert find_package(str(tmp_path)).launch_file == tmp_path / "a.launch"
     tree(tmp_path, {"launch/robocop_goto_as.launch": "<launch/>"})
@@ -144,7 +140,7 @@ def test_launch_file_is_the_named_one_else_the_labs_else_the_only_one(tmp_path: 
 
 
 @pytest.mark.parametrize("folder", ["backup", "OLD", "lab - Copy", "__MACOSX", ".ipynb_checkpoints"])
-def test_copies_aside_are_neither_the_package_nor_its_launch_file(tmp_path: Path, folder: str) -> None:
+def test_copies_aside_are_neither_the_package_nor_its_launch_file(tmp_path, folder):
     lab = {"package.xml": MANIFEST.format(LAB), "launch/robocop_goto_as.launch": "<launch/>"}
     other = {f"{folder}/{name}": text.replace("/>", "></launch>") for name, text in lab.items()}
     beside = tree(tmp_path / "beside", {**{f"my_lab/{name}": text for name, text in lab.items()}, **other})
@@ -153,7 +149,7 @@ def test_copies_aside_are_neither_the_package_nor_its_launch_file(tmp_path: Path
     assert find_package(str(inside)).launch_file == inside / "launch" / "robocop_goto_as.launch"
 
 
-def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path: Path) -> None:
+def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path):
     node = '<node pkg="{}" type="{}" name="n{}"/>\n'
     nodes = [
         (LAB, "robocop_goto_as.py"),
@@ -184,8 +180,8 @@ def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path: Path) -> None:
 
 
 def test_packages_are_known_that_the_launch_file_starts_itself_or_by_another_unless_a_condition_leaves_them_out(
-    tmp_path: Path,
-) -> None:
+    tmp_path,
+):
     nodes = '<node pkg="gazebo_ros" type="a" name="a" if="$(arg all)"/><node pkg="aro_sim" type="b" name="b"/>'
     files = {
         "package.xml": MANIFEST.format(LAB),
@@ -200,7 +196,7 @@ def test_packages_are_known_that_the_launch_file_starts_itself_or_by_another_unl
         assert {node.package for node in found.others} == starts
 
 
-def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path: Path) -> None:
+def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path):
     node = f'<launch><node pkg="{LAB}" type="{{0}}" name="n"><param name="of" value="{{0}}"/></node></launch>'
     files = {
         "package.xml": MANIFEST.format(LAB),

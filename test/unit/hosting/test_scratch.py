@@ -5,8 +5,6 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
-from typing import Optional
 
 import pytest
 from processes import busy_processes, processes_mentioning
@@ -27,7 +25,7 @@ except KeyboardInterrupt:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, None])
-def test_a_program_and_its_children_leave_no_temporary_files(number: Optional[int], tmp_path: Path) -> None:
+def test_a_program_and_its_children_leave_no_temporary_files(number, tmp_path):
     command = [sys.executable, "-c", SCRATCH_PROGRAM, "end" if number is None else "sleep"]
     program = subprocess.Popen(command, env={**os.environ, "TMPDIR": str(tmp_path)})
     try:

@@ -1,8 +1,5 @@
 """The scripts that roslaunch would start, among all that a folder contains."""
 
-from pathlib import Path
-from typing import Dict, List, Optional, Tuple
-
 import pytest
 from hosted_packages import tree
 
@@ -18,7 +15,7 @@ NAME = "robocop_goto_as.py"
 BEGIN = "#!/usr/bin/env python3"
 
 
-def chosen(top: Path, *started: str) -> Tuple[Optional[str], Optional[str]]:
+def chosen(top, *started):
     """Server and bridge, when the launch file starts these types."""
     found = choose(top, [LaunchNode("lab", name, "node", "x.launch, line 1") for name in started])
     server, bridge = (found.get(part) for part in ("server", "bridge"))
@@ -38,13 +35,11 @@ def chosen(top: Path, *started: str) -> Tuple[Optional[str], Optional[str]]:
         ({"main.py": "# SimpleActionServer\n"}, None),
     ],
 )
-def test_server_is_the_script_of_its_name_or_the_only_one_that_offers_the_action_and_no_copy(
-    tmp_path: Path, files: Dict[str, str], expected: Optional[str]
-) -> None:
+def test_server_is_the_script_of_its_name_or_the_only_one_that_offers_the_action_and_no_copy(tmp_path, files, expected):
     assert chosen(tree(tmp_path, files)) == (expected, None)
 
 
-def test_what_is_launched_comes_first(tmp_path: Path) -> None:
+def test_what_is_launched_comes_first(tmp_path):
     tree(tmp_path, {f"scripts/{NAME}": "", "scripts/mine.py": SERVER, "patrol.py": CLIENT, "clicks.py": BRIDGE})
     assert chosen(tmp_path) == (f"scripts/{NAME}", "clicks.py")
     assert chosen(tmp_path, "mine.py") == ("scripts/mine.py", "clicks.py")
@@ -65,20 +60,18 @@ MAIN = "import rospy, goto_server as it\nrospy.init_node('goto')\nit.Server()\n"
         ("test_goto.py", "main.py", ["test_goto.py"]),
     ],
 )
-def test_program_that_imports_the_server_is_started_not_the_module(
-    tmp_path: Path, main: str, expected: str, others: List[str]
-) -> None:
+def test_program_that_imports_the_server_is_started_not_the_module(tmp_path, main, expected, others):
     found = choose(tree(tmp_path, {"goto_server.py": SERVER, "main.py": MAIN, main: MAIN, "plot.py": "import main"}))
     assert found["server"].path.name == expected and [it.name for it in found["server"].others] == others
 
 
-def test_launched_program_is_the_server_that_it_imports(tmp_path: Path) -> None:
+def test_launched_program_is_the_server_that_it_imports(tmp_path):
     tree(tmp_path, {"lab/node.py": f"{SERVER}\ninit_node", "lab/run.py": "from lab.node import main\nmain()\n"})
     assert chosen(tmp_path) == ("lab/node.py", None)
     assert chosen(tmp_path, "run.py") == ("lab/run.py", None)
 
 
-def test_what_the_build_has_made_a_program_of_is_installed(tmp_path: Path) -> None:
+def test_what_the_build_has_made_a_program_of_is_installed(tmp_path):
     tree(tmp_path, {f"src/{NAME}": "", f"old/{NAME}": "x"})
     (found,) = choose(tmp_path, (), [tmp_path.parent / NAME]).values()
     assert (found.path, found.is_installed, found.others) == (
@@ -89,7 +82,7 @@ def test_what_the_build_has_made_a_program_of_is_installed(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("names", [(f"nodes/{NAME}", f"scripts/{NAME}"), ("first.py", "second.py")])
-def test_two_equal_candidates_are_refused_by_name(tmp_path: Path, names: Tuple[str, str]) -> None:
+def test_two_equal_candidates_are_refused_by_name(tmp_path, names):
     tree(tmp_path, {name: f"{SERVER}  # {name}" for name in names})
     with pytest.raises(HostingError, match=f"{names[0]} and {names[1]}: each of them could be the server"):
         choose(tmp_path)
@@ -107,7 +100,7 @@ def test_two_equal_candidates_are_refused_by_name(tmp_path: Path, names: Tuple[s
         ("", ["has no #! line"]),
     ],
 )
-def test_reason_why_linux_can_not_start_a_script_is_named(tmp_path: Path, content: str, expected: str) -> None:
+def test_reason_why_linux_can_not_start_a_script_is_named(tmp_path, content, expected):
     script = tmp_path / "a.py"
     script.write_bytes(content.encode())
     script.chmod(0o755)
@@ -127,6 +120,6 @@ def test_reason_why_linux_can_not_start_a_script_is_named(tmp_path: Path, conten
         ("#!/home/anna/venv/bin/python3", "/home/anna/venv/bin/python3"),
     ],
 )
-def test_interpreter_other_than_the_systems_python3_is_named(tmp_path: Path, line: str, expected: str) -> None:
+def test_interpreter_other_than_the_systems_python3_is_named(tmp_path, line, expected):
     (tmp_path / "a.py").write_text(f"{line}\n")
     assert interpreter(tmp_path / "a.py") == expected

@@ -27,7 +27,7 @@ from robocop_hosting.sim_with import (
 PAIR = {"package.xml": MANIFEST.format(LAB), "a.launch": "<launch><arg name='speed'/></launch>"}
 
 
-def test_arguments_go_to_the_launch_file_that_declares_them_or_to_the_simulator(tmp_path: Path) -> None:
+def test_arguments_go_to_the_launch_file_that_declares_them_or_to_the_simulator(tmp_path):
     package = find_package(str(tree(tmp_path, PAIR)))
     given, known = ["speed:=0.1", "seed:=7", "spawn:=1 2"], ["seed", "spawn"]
     assert sort_arguments(package, given, known) == ({"speed": "0.1"}, "seed:=7 'spawn:=1 2'")
@@ -35,9 +35,7 @@ def test_arguments_go_to_the_launch_file_that_declares_them_or_to_the_simulator(
         sort_arguments(package, ["wrold:=x"], known)
 
 
-def test_rviz_is_left_to_aro_sim_where_the_launch_file_has_no_argument_for_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_rviz_is_left_to_aro_sim_where_the_launch_file_has_no_argument_for_it(tmp_path, monkeypatch):
     monkeypatch.setenv("ROBOCOP_RVIZ", "true")
     package = find_package(str(tree(tmp_path, PAIR)))
     assert sort_arguments(package, ["rviz:=false"], ["seed"]) == ({}, "")
@@ -45,14 +43,14 @@ def test_rviz_is_left_to_aro_sim_where_the_launch_file_has_no_argument_for_it(
 
 
 @pytest.mark.parametrize("package, script", [("aro_sim", "lab_simulator.py"), (PACKAGE, "robocop_sim.py")])
-def test_simulator_is_started_unless_the_package_starts_it(tmp_path: Path, package: str, script: str) -> None:
+def test_simulator_is_started_unless_the_package_starts_it(tmp_path, package, script):
     hosted = find_package(str(tree(tmp_path, {"package.xml": MANIFEST.format(LAB), "x.launch": "<launch/>"})))
     for others in ([], [LaunchNode(package, script, "sim", "x.launch")]):
         written = write_launch_file(hosted, tmp_path, {}, LaunchPlan({}, {}, (), others)).read_text()
         assert ("aro_sim" in written) != bool(others)
 
 
-def test_launch_file_gets_its_arguments_and_scripts_without_one_are_started_as_by_rosrun(tmp_path: Path) -> None:
+def test_launch_file_gets_its_arguments_and_scripts_without_one_are_started_as_by_rosrun(tmp_path):
     package = find_package(str(tree(tmp_path / "src" / LAB, PAIR)))
     included = ElementTree.parse(write_launch_file(package, tmp_path, {"speed": "<1"}, LaunchPlan({}, {}, ()))).findall(
         "include"
@@ -75,14 +73,12 @@ def test_launch_file_gets_its_arguments_and_scripts_without_one_are_started_as_b
 @pytest.mark.parametrize(
     "line", ["my_lab --launch other.launch sync:=lockstep", "--launch other.launch my_lab sync:=lockstep"]
 )
-def test_options_may_stand_before_or_among_the_arguments(line: str) -> None:
+def test_options_may_stand_before_or_among_the_arguments(line):
     args = parsed(line.split())
     assert (args.path, args.launch, args.arguments) == ("my_lab", "other.launch", ["sync:=lockstep"])
 
 
-def test_script_that_roslaunch_can_not_start_is_refused_with_the_remedy_and_left_as_it_is(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_script_that_roslaunch_can_not_start_is_refused_with_the_remedy_and_left_as_it_is(tmp_path, capsys):
     tree(
         tmp_path, {"a.py": "#!/usr/bin/env python3\n", "b.py": "\n#!/usr/bin/env python3\n", "c.py": "#!/bin/python\n"}
     )
@@ -97,5 +93,5 @@ def test_script_that_roslaunch_can_not_start_is_refused_with_the_remedy_and_left
     assert "c.py is started by '/bin/python', which the lab may not have" in capsys.readouterr().err
 
 
-def test_two_that_run_the_same_package_at_once_build_in_different_folders(tmp_path: Path) -> None:
+def test_two_that_run_the_same_package_at_once_build_in_different_folders(tmp_path):
     assert [lock_free_folder(tmp_path / "with", "lab").name for _ in range(3)] == ["lab", "lab-1", "lab-2"]

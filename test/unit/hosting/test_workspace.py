@@ -22,19 +22,19 @@ CMake Warning at /usr/share/genmsg/cmake/genmsg-extras.cmake:49 (message):
         "Traceback (most recent call last):",
     ],
 )
-def test_log_of_a_failed_build_is_shown_from_the_first_error_with_paths_inside_the_workspace(error: str) -> None:
+def test_log_of_a_failed_build_is_shown_from_the_first_error_with_paths_inside_the_workspace(error):
     log = f"{WARNING}{error.replace('lab', '/build/lab')}\n" + "further\n" * 100
     assert error_of(log, Path("/build")).splitlines()[:2] == [error, "further"]
 
 
-def test_log_of_a_failed_build_without_an_error_is_shown_by_its_end() -> None:
+def test_log_of_a_failed_build_without_an_error_is_shown_by_its_end():
     assert error_of("line\n" * 100 + "last\n", Path("/build")).splitlines()[-2:] == ["line", "last"]
 
 
-def test_a_workspace_that_was_moved_is_built_again(tmp_path: Path) -> None:
+def test_a_workspace_that_was_moved_is_built_again(tmp_path):
     built = []
 
-    def use(folder: Path) -> None:
+    def use(folder):
         build_once(folder, {}, lambda: built.append(folder) or {})
 
     here, there = tmp_path / "here", tmp_path / "there"
@@ -47,7 +47,7 @@ def test_a_workspace_that_was_moved_is_built_again(tmp_path: Path) -> None:
     assert built == [here, there]
 
 
-def test_a_changed_renamed_or_new_source_file_is_built_in_another_folder(tmp_path: Path) -> None:
+def test_a_changed_renamed_or_new_source_file_is_built_in_another_folder(tmp_path):
     source = tmp_path / "source"
     source.mkdir()
     (source / "one").write_text("text")
@@ -61,7 +61,7 @@ def test_a_changed_renamed_or_new_source_file_is_built_in_another_folder(tmp_pat
     assert len({*folders}) == 4 and folders[0] == folders[1]
 
 
-def test_sources_are_copied_without_links_that_lead_nowhere_as_editors_make_them(tmp_path: Path) -> None:
+def test_sources_are_copied_without_links_that_lead_nowhere_as_editors_make_them(tmp_path):
     source = tmp_path / "lab"
     source.mkdir()
     (source / "server.py").touch()

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from typing import Iterator
 
 import numpy as np
 import pytest
@@ -24,7 +23,7 @@ PLACE = Pose2D(1.0, -2.0, 2.0)
     params=[("burger", "-0.02 0.01 0.03"), ("turtlebot2", "0.05 0 0")],
     ids=" at ".join,
 )
-def _engine(request: pytest.FixtureRequest) -> Iterator[BulletEngine]:
+def _engine(request):
     """A robot whose base_link has its centre of mass at a point; a Burger would tip over one before its wheels."""
     name, centre = request.param
     model = model_named(name)
@@ -41,19 +40,19 @@ def _engine(request: pytest.FixtureRequest) -> Iterator[BulletEngine]:
     engine.close()
 
 
-def _state(engine: BulletEngine) -> "list[float]":
+def _state(engine):
     engine.update_fleet()
     return [*engine.fleet.poses[0], *engine.fleet.twists[0]]
 
 
-def _between_the_wheels(engine: BulletEngine) -> "list[float]":
+def _between_the_wheels(engine):
     """Where base_footprint has to be: x, y [m]."""
     (robot,) = engine._robots
     links = [pybullet.getLinkState(robot.body, wheel, 0, 1, engine.client)[4] for wheel in robot.wheels]
     return np.mean(links, axis=0)[:2].tolist()
 
 
-def test_robot_is_where_it_is_placed_and_stays_there(engine: BulletEngine) -> None:
+def test_robot_is_where_it_is_placed_and_stays_there(engine):
     height = engine.fleet.models[0].footprint_from_base.position[2]
     for place in (PLACE, ORIGIN):
         engine.place(0, place)
@@ -64,7 +63,7 @@ def test_robot_is_where_it_is_placed_and_stays_there(engine: BulletEngine) -> No
         assert _state(engine) == pytest.approx([*place, 0.0, 0.0], abs=2e-3)
 
 
-def test_base_stays_where_it_is_while_the_robot_turns_in_place(engine: BulletEngine) -> None:
+def test_base_stays_where_it_is_while_the_robot_turns_in_place(engine):
     engine.fleet.commands[0] = 0.0, 1.0
     places, speeds = [], []
     for step in range(0, 480, 24):

@@ -5,7 +5,7 @@ test_simulator.py.
 """
 
 import math
-from typing import List, Tuple
+from typing import Tuple
 from unittest import mock
 
 import numpy as np
@@ -25,7 +25,7 @@ Pose = Tuple[float, float, float]
 LAB = Beams(0.0, 6.28319 / 359, 360)
 
 
-def cut_of(segments: np.ndarray, circles: np.ndarray) -> CrossSection:
+def cut_of(segments, circles):
     """A cross-section with these segments (m, 2, 2) and circles (k, 3) [m] only."""
     cut = CrossSection(World("w", (), Pose2D(), (), ""), 0.1)
     cut.segments, cut.circles = np.array(segments, float).reshape(-1, 2, 2), np.array(circles, float).reshape(-1, 3)
@@ -49,18 +49,14 @@ fans = st.builds(lambda start, span, n: Beams(start, span / max(n - 1, 1), n), s
 
 
 @given(fans, cuts, poses, st.floats(0.0, 5.0))
-def test_maximum_range_removes_only_returns_beyond_it(
-    beams: Beams, cut: CrossSection, pose: Pose, max_range: float
-) -> None:
+def test_maximum_range_removes_only_returns_beyond_it(beams, cut, pose, max_range):
     every = beams.cast(np.array([pose]), cut)
     seen = beams.cast(np.array([pose]), cut, reach=max_range)
     np.testing.assert_array_equal(seen, np.where(every <= max_range, every, np.inf))
 
 
 @given(fans, poses, st.data(), st.floats(0.01, 9.0), st.floats(0.3, 2.8), st.floats(0.01, 3.0), st.booleans())
-def test_beam_aimed_at_the_end_of_a_segment_hits_it(
-    beams: Beams, pose: Pose, data: st.DataObject, away: float, slant: float, length: float, left: bool
-) -> None:
+def test_beam_aimed_at_the_end_of_a_segment_hits_it(beams, pose, data, away, slant, length, left):
     beam = data.draw(st.integers(0, beams.samples - 1))
     angle = pose[2] + beams.angle_min + beam * beams.increment
     x, y = pose[0] + away * math.cos(angle), pose[1] + away * math.sin(angle)
@@ -72,9 +68,7 @@ def test_beam_aimed_at_the_end_of_a_segment_hits_it(
 @given(
     fans, segments, circles, poses, st.floats(0.5, 30.0), st.sampled_from([(1.0, 1 << 20), (8.0, 1 << 20), (8.0, 9)])
 )
-def test_scan_with_a_grid_index_is_bit_identical_to_one_without(
-    beams: Beams, walls: List[object], posts: List[object], pose: Pose, max_range: float, size: Tuple[float, int]
-) -> None:
+def test_scan_with_a_grid_index_is_bit_identical_to_one_without(beams, walls, posts, pose, max_range, size):
     scale, max_tiles = size
     cut = cut_of(scale * np.array(walls, float), scale * np.array(posts, float))
     every = beams.cast(np.array([pose]), cut, reach=max_range)
@@ -84,9 +78,7 @@ def test_scan_with_a_grid_index_is_bit_identical_to_one_without(
 
 
 @given(coordinates, coordinates, st.integers(0, 7))
-def test_beams_through_many_tiles_and_along_their_borders_see_what_all_segments_show(
-    x: float, y: float, eighth: int
-) -> None:
+def test_beams_through_many_tiles_and_along_their_borders_see_what_all_segments_show(x, y, eighth):
     corners = [(i, j) for i in range(-12, 13, 4) for j in range(-12, 13, 4)]
     walls = [((i, j), (i + di, j + dj)) for i, j in corners for di, dj in ((0.5, 0.0), (0.0, 0.5))]
     cut, beams = cut_of(np.array(walls, float), np.zeros((0, 3))), Beams(0.0, math.pi / 36, 72)
@@ -97,9 +89,7 @@ def test_beams_through_many_tiles_and_along_their_borders_see_what_all_segments_
 
 
 @given(fans, st.lists(poses, min_size=1, max_size=6), st.lists(cuts, min_size=1, max_size=2), st.data())
-def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
-    beams: Beams, footprints: List[Pose], walls: List[CrossSection], data: st.DataObject
-) -> None:
+def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(beams, footprints, walls, data):
     robots = range(len(footprints))
     bodies = np.array(data.draw(st.lists(st.tuples(lattice, lattice, st.floats(0.05, 0.5)), max_size=9)))
     owners = np.array([i % len(footprints) for i in range(len(bodies))], np.int64)
@@ -113,17 +103,17 @@ def test_scanning_all_robots_at_once_is_bit_identical_to_one_at_a_time(
         assert beams.scan(scene, [robot], 5.0).tobytes() == together[robot].tobytes()
 
 
-def test_no_beam_passes_through_the_walls_of_a_closed_room() -> None:
+def test_no_beam_passes_through_the_walls_of_a_closed_room():
     walls = CrossSection(world_named("maze_1"), 0.182)
     assert np.isfinite(LAB.cast(np.random.default_rng(5).uniform(-0.4, 5.4, (2000, 3)), walls)).all()
 
 
-def test_scanner_inside_a_circle_sees_its_far_side() -> None:
+def test_scanner_inside_a_circle_sees_its_far_side():
     drum = cut_of(np.zeros((0, 2, 2)), np.array([[0.5, 0.0, 2.0]]))
     assert Beams(0.0, math.pi, 2).cast(np.zeros((1, 3)), drum)[0] == pytest.approx([2.5, 1.5])
 
 
-def test_scan_of_an_unknown_robot_or_from_a_pose_that_is_not_finite_is_refused() -> None:
+def test_scan_of_an_unknown_robot_or_from_a_pose_that_is_not_finite_is_refused():
     scene = BeamScene(
         [BeamPlane(cut_of(np.zeros((0, 2, 2)), np.zeros((0, 3))))], [0, 0], np.zeros((2, 3)), np.zeros((2, 3))
     )

@@ -18,7 +18,7 @@ from aro_robocop_goto_as.physics.quiet_pybullet import pybullet
 from aro_robocop_goto_as.raycast.beams import Beams
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
 from aro_robocop_goto_as.robot.fleet import Fleet
-from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry, Mesh, Plane, Sphere
+from aro_robocop_goto_as.shapes import Box, Cylinder, Mesh, Plane, Sphere
 from aro_robocop_goto_as.world.model import Obstacle, World
 
 HEIGHT = 0.182
@@ -27,19 +27,19 @@ DIRECTIONS = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
 BEAMS = Beams(-math.pi, 2.0 * math.pi / 720, 721)
 
 
-def _world(geometry: Geometry, pose: Pose3D) -> World:
+def _world(geometry, pose):
     return World("one", (Obstacle("one/link/shape", pose, geometry),), Pose2D(), (), "")
 
 
-def _cast(world: World, origin: Pose2D = ORIGIN) -> np.ndarray:
+def _cast(world, origin=ORIGIN):
     return BEAMS.cast(np.array([[origin.x, origin.y, origin.yaw]]), CrossSection(world, HEIGHT))[0]
 
 
-def _beam(angle: float) -> int:
+def _beam(angle):
     return int(np.argmin(np.abs(ANGLES - angle)))
 
 
-def _bullet_distances(world: World, origin: Pose2D, far: float) -> np.ndarray:
+def _bullet_distances(world, origin, far):
     engine = BulletEngine(world, Fleet([], [], []), 240, 20, 1.0)
     engine.reset([])
     start = (origin.x, origin.y, HEIGHT)
@@ -66,9 +66,7 @@ tilts = st.floats(-1.5, 1.5)
 
 
 @given(geometries, st.tuples(tilts, tilts, tilts), st.floats(-0.3, 0.6), st.floats(-3, 3))
-def test_scans_of_upright_and_tilted_shapes_match_bullets_rays(
-    geometry: Geometry, rpy: "tuple[float, float, float]", z: float, yaw: float
-) -> None:
+def test_scans_of_upright_and_tilted_shapes_match_bullets_rays(geometry, rpy, z, yaw):
     world = _world(geometry, Pose3D.from_xyz_rpy((2.5, 0.5, z), rpy))
     ours = _cast(world, Pose2D(0.1, -0.2, yaw))
     with mock.patch.object(bullet_shapes, "MAX_TRIANGLES", 5):  # of the 12 of a box
@@ -81,13 +79,13 @@ def test_scans_of_upright_and_tilted_shapes_match_bullets_rays(
         assert np.quantile(np.abs(ours[both] - bullets[both]), 0.8) < 0.01
 
 
-def test_obstacles_above_or_below_the_lidar_are_not_seen() -> None:
+def test_obstacles_above_or_below_the_lidar_are_not_seen():
     for z in (0.05, 0.4):
         for geometry in (Box((0.2, 0.2, 0.2)), Cylinder(0.1, 0.2), Sphere(0.1)):
             assert np.isinf(_cast(_world(geometry, Pose3D((1.0, 0.0, z))))).all()
 
 
-def test_vertical_plane_is_an_infinite_wall_and_horizontal_plane_is_not_seen() -> None:
+def test_vertical_plane_is_an_infinite_wall_and_horizontal_plane_is_not_seen():
     wall = _cast(_world(Plane((0.0, -1.0, 0.0)), Pose3D((5.0, 2.0, 0.0))))
     assert wall[_beam(math.pi / 2)] == pytest.approx(2.0)
     assert wall[_beam(math.pi / 6)] == pytest.approx(4.0)

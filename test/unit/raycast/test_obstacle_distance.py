@@ -8,7 +8,7 @@ from support import analytic_distances, model_named, world_named
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.obstacle_distance import MAX_SPACING, MIN_HEIGHT, ObstacleDistance, body_heights
-from aro_robocop_goto_as.shapes import Box, Cylinder, Geometry, Mesh, Plane, Sphere, Walls
+from aro_robocop_goto_as.shapes import Box, Cylinder, Mesh, Plane, Sphere, Walls
 from aro_robocop_goto_as.world.model import Obstacle, World
 
 HEIGHTS = (0.02, 0.1, 0.18)
@@ -16,12 +16,12 @@ SQUARE = np.array([[[-1, -1], [1, -1]], [[1, -1], [1, 1]], [[1, 1], [-1, 1]], [[
 SHEET = Mesh(np.array([[[-9, 0, -9], [9, 0, -9], [0, 0, 9]]], float), "")
 
 
-def _nearest(geometry: Geometry, pose: Pose3D, x: float, y: float) -> "tuple[float, str]":
+def _nearest(geometry, pose, x, y):
     world = World("w", (Obstacle("m/l/c", pose, geometry),), Pose2D(), (), "")
     return tuple(ObstacleDistance(world, HEIGHTS).nearest(x, y))
 
 
-def test_cross_sections_of_a_body_reach_from_its_bottom_to_its_scanner_without_a_gap() -> None:
+def test_cross_sections_of_a_body_reach_from_its_bottom_to_its_scanner_without_a_gap():
     for model in map(model_named, ("burger", "turtlebot2")):
         heights = body_heights(model)
         assert (heights[0], heights[-1]) == pytest.approx((MIN_HEIGHT, model.height_of(model.base_from_scan)))
@@ -29,7 +29,7 @@ def test_cross_sections_of_a_body_reach_from_its_bottom_to_its_scanner_without_a
 
 
 @pytest.mark.parametrize("name", ["stage_4", "world", "maze_1"])
-def test_the_distance_is_that_of_the_nearest_of_many_rays(name: str) -> None:
+def test_the_distance_is_that_of_the_nearest_of_many_rays(name):
     world = world_named(name)
     distance = ObstacleDistance(world, HEIGHTS)
     around = np.linspace(0.0, 2.0 * math.pi, 3600)
@@ -57,13 +57,11 @@ def test_the_distance_is_that_of_the_nearest_of_many_rays(name: str) -> None:
         (Plane((1.0, 0.0, 0.0)), Pose3D((2.0, 0.0, 0.0)), (0.0, 7.0), 2.0),
     ],
 )
-def test_solid_shapes_are_at_no_distance_from_a_point_within_them(
-    geometry: Geometry, pose: Pose3D, point: "tuple[float, float]", distance: float
-) -> None:
+def test_solid_shapes_are_at_no_distance_from_a_point_within_them(geometry, pose, point, distance):
     assert _nearest(geometry, pose, *point) == (pytest.approx(distance, abs=2e-3), "m/l/c")
 
 
 @pytest.mark.parametrize("pose", [Pose3D((0.0, 0.0, 0.5)), Pose3D((0.0, 0.0, -0.5))])
-def test_what_is_above_the_robot_or_below_the_floor_does_not_count(pose: Pose3D) -> None:
+def test_what_is_above_the_robot_or_below_the_floor_does_not_count(pose):
     assert _nearest(Box((1.0, 1.0, 0.2)), pose, 0.0, 0.0) == (math.inf, "")
     assert _nearest(Plane((0.0, 0.0, 1.0)), pose, 0.0, 0.0) == (math.inf, "")

@@ -1,7 +1,6 @@
 """Limits and commands of base controllers, and base_controller.c against its definition."""
 
 import math
-from typing import Callable
 
 import pytest
 from support import model_named
@@ -10,23 +9,22 @@ from aro_robocop_goto_as.errors import CommandError
 from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.robot.base_controller import BaseLimits, clamped, limits_from
 from aro_robocop_goto_as.simulation.params import SimParams
-from aro_robocop_goto_as.simulation.simulator import Simulator
 
 
 @pytest.mark.parametrize("bad", [Twist2D(math.nan, 0.0), Twist2D(0.0, math.inf), Twist2D(-math.inf, math.nan)])
-def test_command_that_is_not_finite_is_refused_with_its_values(bad: Twist2D) -> None:
+def test_command_that_is_not_finite_is_refused_with_its_values(bad):
     with pytest.raises(CommandError, match=f"linear.x {bad.v} m/s, angular.z {bad.w} rad/s"):
         clamped(bad, BaseLimits(0.22, 2.84, 2.5, 3.2, 0.5))
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_command_beyond_the_velocity_limits_is_clamped_to_them(sign: float) -> None:
+def test_command_beyond_the_velocity_limits_is_clamped_to_them(sign):
     limits = BaseLimits(0.22, 2.84, 2.5, 3.2, 0.5)
     assert clamped(Twist2D(sign * 0.3, sign * 1.0), limits) == Twist2D(sign * 0.22, sign * 1.0)
     assert clamped(Twist2D(sign * 0.1, sign * 5.0), limits) == Twist2D(sign * 0.1, sign * 2.84)
 
 
-def test_limits_and_timeout_are_the_models_own_unless_a_parameter_overrides_them() -> None:
+def test_limits_and_timeout_are_the_models_own_unless_a_parameter_overrides_them():
     burger, turtlebot2 = (model_named(name).figures for name in ("burger", "turtlebot2"))
     assert limits_from(SimParams().limits, burger) == (0.22, 2.84, 2.5, 3.2, 0.5)
     assert limits_from(SimParams().limits, turtlebot2) == (1.5, 6.6, 1.0, 2.0, 0.6)
@@ -35,8 +33,8 @@ def test_limits_and_timeout_are_the_models_own_unless_a_parameter_overrides_them
 
 
 def test_command_is_approached_within_its_acceleration_and_dropped_after_its_timeout(
-    simulator: Callable[..., Simulator],
-) -> None:
+    simulator,
+):
     sim = simulator("empty", drive="kinematic", max_linear_acceleration=1.2, cmd_vel_timeout=0.5)
     sim.command(Twist2D(0.2))
     speeds = []

@@ -1,7 +1,6 @@
 """Every model drives accurately, stands upright and still, and is seen with its own shape; others are refused."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,17 +12,16 @@ from aro_robocop_goto_as.robot.catalog import load_figures
 from aro_robocop_goto_as.robot.model import RobotSpec
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.params import SimParams
-from aro_robocop_goto_as.simulation.simulator import Simulator
 
 BURGER_BOX = math.sqrt(0.14 * 0.14 / math.pi)  # [m] radius of the circle of the same area
 
 
-def _sees(sim: Simulator, robot: int) -> float:
+def _sees(sim, robot):
     return float(sim.exact_distances(robot).min())
 
 
 @pytest.mark.parametrize("params", [{"drive": "wheels"}, {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}])
-def test_robots_of_different_models_see_each_other_at_their_scanners_heights(params: "dict[str, object]") -> None:
+def test_robots_of_different_models_see_each_other_at_their_scanners_heights(params):
     names = ["burger", "waffle", "turtlebot2"]
     places = [Pose2D(0.0, 0.0), Pose2D(0.0, 3.0), Pose2D(0.0, -3.0)]
     robots = [RobotSpec(name, model_named(name), place) for name, place in zip(names, places)]
@@ -38,7 +36,7 @@ def test_robots_of_different_models_see_each_other_at_their_scanners_heights(par
 
 
 @pytest.mark.parametrize("name", ["wafle", "../burger", ""])
-def test_unknown_model_is_refused_with_the_known_ones(name: str) -> None:
+def test_unknown_model_is_refused_with_the_known_ones(name):
     with pytest.raises(RobotModelError, match=f"no model {name!r}; known are: burger, burger_rgbd, turtlebot2, waffle"):
         model_named(name)
 
@@ -51,7 +49,7 @@ def test_unknown_model_is_refused_with_the_known_ones(name: str) -> None:
         ("- 1\n", "expected lines of 'NAME: VALUE'"),
     ],
 )
-def test_wrong_or_missing_figures_are_refused_by_name(tmp_path: Path, text: str, expected: str) -> None:
+def test_wrong_or_missing_figures_are_refused_by_name(tmp_path, text, expected):
     path = tmp_path / "robot.yaml"
     path.write_text(text)
     with pytest.raises(RobocopError) as refusal:

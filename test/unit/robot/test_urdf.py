@@ -6,8 +6,6 @@ import pytest
 from support import ROOT, model_named
 
 from aro_robocop_goto_as.errors import RobotModelError
-from aro_robocop_goto_as.geometry import Vector3
-from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.robot.urdf import load_robot
 
 URDF = Path(ROOT, "urdf", "burger.urdf").read_text()
@@ -33,9 +31,7 @@ URDF = Path(ROOT, "urdf", "burger.urdf").read_text()
         ),
     ],
 )
-def test_broken_description_is_refused_with_file_and_problem(
-    burger: RobotModel, tmp_path: Path, old: str, new: str, expected: str
-) -> None:
+def test_broken_description_is_refused_with_file_and_problem(burger, tmp_path, old, new, expected):
     path = tmp_path / "robot.urdf"
     assert old in URDF
     path.write_text(URDF.replace(old, new))
@@ -54,9 +50,7 @@ def test_broken_description_is_refused_with_file_and_problem(
         ("turtlebot2", "turtlebot2", 0.035, 0.230, 0.0102, (0.0, 0.0, 0.150), (0.056, 0.062, 0.0202)),
     ],
 )
-def test_models_have_their_manufacturers_dimensions(
-    name: str, robot: str, wheel_radius: float, separation: float, lift: float, scan: Vector3, imu: Vector3
-) -> None:
+def test_models_have_their_manufacturers_dimensions(name, robot, wheel_radius, separation, lift, scan, imu):
     model = model_named(name)
     assert (model.name, model.wheel_radius) == (robot, wheel_radius)
     assert model.wheel_separation == pytest.approx(separation)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from support import analytic_distances, model_named, world_named
 
-from aro_robocop_goto_as.geometry import Pose2D, Pose3D, compose3, lifted, rotation_matrix
-from aro_robocop_goto_as.sensors.camera_image import CameraImage, CameraSpec, points_of
+from aro_robocop_goto_as.geometry import Pose2D, compose3, lifted, rotation_matrix
+from aro_robocop_goto_as.sensors.camera_image import points_of
 from aro_robocop_goto_as.shapes import Box
 from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.model import World
@@ -18,20 +18,20 @@ WITH_CAMERA = ["burger_rgbd", "waffle", "waffle_pi", "turtlebot2"]
 TOLERANCE = 0.003  # [m] of depth on flat walls; larger at a cylinder's edge, which is seen at a slant
 
 
-def _image(sim: Simulator, robot: int = 0) -> CameraImage:
+def _image(sim, robot=0):
     while True:
         due = sim.advance({"camera": [robot]})
         if due is not None and due.of("camera"):
             return sim.sensors.camera.images[robot]
 
 
-def _world_from_camera(model: str, pose: Pose2D) -> Pose3D:
+def _world_from_camera(model, pose):
     robot = model_named(model)
     assert robot.base_from_camera is not None
     return compose3(compose3(lifted(pose), robot.footprint_from_base), robot.base_from_camera)
 
 
-def _points(image: CameraImage, world_from_camera: Pose3D, spec: CameraSpec) -> np.ndarray:
+def _points(image, world_from_camera, spec):
     """An image's points in the world frame: (height, width, 3) [m]."""
     points = points_of(image.depth, spec).astype(float)
     return points @ rotation_matrix(world_from_camera.orientation).T + np.array(world_from_camera.position)
@@ -42,7 +42,7 @@ def _points(image: CameraImage, world_from_camera: Pose3D, spec: CameraSpec) -> 
     "world, pose",
     [("stage_1", Pose2D(0.0, 0.0, 0.4)), ("maze_1", Pose2D(0.0, 0.0, 0.1)), ("stage_4", Pose2D(-0.7, 0.0, 2.0))],
 )
-def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, world: str, pose: Pose2D) -> None:
+def test_depth_agrees_with_an_analytic_ray_cast(simulator, model, world, pose):
     description = world_named(world)
     walls = World(world, tuple(o for o in description.obstacles if isinstance(o.geometry, Box)), pose, (), "")
     sim = simulator(world, pose, model=model, **KINEMATIC)
@@ -62,7 +62,7 @@ def test_depth_agrees_with_an_analytic_ray_cast(simulator: Make, model: str, wor
     assert compared > 150
 
 
-def test_floor_is_at_height_zero_and_sky_infinitely_far(simulator: Make) -> None:
+def test_floor_is_at_height_zero_and_sky_infinitely_far(simulator):
     sim = simulator("empty", model="waffle", **KINEMATIC)
     image, spec = _image(sim), sim.sensors.camera.specs[0]
     points = _points(image, _world_from_camera("waffle", Pose2D()), spec)
@@ -71,7 +71,7 @@ def test_floor_is_at_height_zero_and_sky_infinitely_far(simulator: Make) -> None
     assert np.isnan(points_of(image.depth, spec)[:58]).all()
 
 
-def test_camera_sees_other_robots_but_not_its_own(simulator: Make) -> None:
+def test_camera_sees_other_robots_but_not_its_own(simulator):
     without_others = _image(simulator("empty", model="burger_rgbd"))
     sim = simulator("empty", Pose2D(), Pose2D(1.0, 0.0), model="burger_rgbd")
     image = _image(sim)
@@ -82,7 +82,7 @@ def test_camera_sees_other_robots_but_not_its_own(simulator: Make) -> None:
     assert between_plates.depth.min() > 0.6, "not the floor, which is 0.7 m away at the image's lower edge"
 
 
-def test_images_follow_moving_obstacles_and_world_changes(simulator: Make) -> None:
+def test_images_follow_moving_obstacles_and_world_changes(simulator):
     sim = simulator("stage_3", Pose2D(0.0, 0.0, 0.0), model="burger_rgbd", moving=True, **KINEMATIC)
     first = _image(sim)
     for _ in range(5 * 60):

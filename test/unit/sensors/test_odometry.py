@@ -2,7 +2,6 @@
 
 import math
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,23 +18,23 @@ LIMITS = BaseLimits(1.0, 1.0, 1.0, 1.0, 0.0)
 RADIUS, SEPARATION = 0.033, 0.16
 
 
-def _fleet(robots: int = 1) -> Fleet:
+def _fleet(robots=1):
     return Fleet([model_named("burger")] * robots, [LIMITS] * robots, [0.1] * robots)
 
 
-def _context(fleet: Fleet) -> Any:
+def _context(fleet):
     """A context where the left wheel slips by two sigmas, and the right one by one; only their sizes count."""
     noise = SimpleNamespace(standard_normal=lambda out: np.copyto(out, [2.0, -1.0]))
     return SimpleNamespace(fleet=fleet, noise=SimpleNamespace(stream=lambda _: noise))
 
 
-def _measure(odometry: WheelOdometry) -> None:
+def _measure(odometry):
     for call in odometry.measurement_calls([0]).measure:
         call()
 
 
 @given(st.floats(-0.5, 0.5), st.floats(-5, 5), st.integers(1, 200))
-def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: float, updates: int) -> None:
+def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v, w, updates):
     fleet = _fleet()
     odometry = WheelOdometry(OdometryParams(), _context(fleet))
     for update in range(1, updates + 1):
@@ -57,9 +56,7 @@ def test_odometry_at_constant_wheel_speeds_follows_the_exact_arc(v: float, w: fl
         (OdometryParams(encoder_tick=0.3), 0.9 * 0.033, 0.0),
     ],
 )
-def test_each_error_of_odometry_has_its_size_and_a_reset_forgets_it(
-    params: OdometryParams, x: float, yaw: float
-) -> None:
+def test_each_error_of_odometry_has_its_size_and_a_reset_forgets_it(params, x, yaw):
     fleet = _fleet()
     odometry = WheelOdometry(params, _context(fleet))
     fleet.wheel_angles[0] = 1.0, 1.0  # [rad]
@@ -72,7 +69,7 @@ def test_each_error_of_odometry_has_its_size_and_a_reset_forgets_it(
     assert odometry.poses[0] == pytest.approx((0.0, 0.0, 0.0))
 
 
-def test_pose_now_is_that_of_the_next_update_without_its_slip() -> None:
+def test_pose_now_is_that_of_the_next_update_without_its_slip():
     fleet = _fleet()
     odometry = WheelOdometry(OdometryParams(odom_slip=0.1), _context(fleet))
     _measure(odometry)

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Callable
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from aro_robocop_goto_as.geometry import STANDSTILL, Twist2D, compose, wrap_angl
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
-ENGINES: Dict[str, Dict[str, Any]] = {
+ENGINES = {
     "wheels": {"drive": "wheels"},
     "kinematic": {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60},
 }
@@ -25,25 +25,25 @@ every_engine = pytest.mark.parametrize("engine", ENGINES)
 every_model = pytest.mark.parametrize("model", MODELS)
 
 
-def every_combination(test: Any) -> Any:
+def every_combination(test):
     """Run a test for every engine, model and world."""
     return every_engine(every_model(pytest.mark.parametrize("world", WORLDS)(test)))
 
 
 @pytest.fixture
-def make(simulator: Make, engine: str, model: str, world: str) -> Make:
+def make(simulator, engine, model, world):
     """Makes a simulator of a robot at the world's spawn, with a seed."""
 
-    def made(seed: int = 1) -> Simulator:
+    def made(seed=1):
         params = dict(moving=True, seed=seed, camera_width=16, camera_height=12, **ENGINES[engine])  # small images
         return simulator(world, world_named(world).spawn, model=model, **params)
 
     return made
 
 
-def _run(sim: Simulator) -> List[Tuple[str, bytes]]:
+def _run(sim):
     """All that was measured in a drive along an arc and a stop."""
-    seen: List[Tuple[str, bytes]] = []
+    seen = []
     rows = {
         "odom": sim.sensors.odometry.poses,
         "ground_truth_odom": sim.sensors.ground_truth.poses,
@@ -62,14 +62,14 @@ def _run(sim: Simulator) -> List[Tuple[str, bytes]]:
 
 
 @every_combination
-def test_the_same_seed_gives_the_same_run_and_another_seed_other_noise(make: Make) -> None:
+def test_the_same_seed_gives_the_same_run_and_another_seed_other_noise(make):
     first = _run(make())
     assert first == _run(make())
     assert first != _run(make(2))
 
 
 @every_combination
-def test_reset_starts_noise_and_moving_obstacles_anew_at_the_spawn_while_time_goes_on(make: Make, world: str) -> None:
+def test_reset_starts_noise_and_moving_obstacles_anew_at_the_spawn_while_time_goes_on(make, world):
     sim = make()
     first, before = _run(sim), sim.stamp_ns
     sim.reset()
@@ -78,7 +78,7 @@ def test_reset_starts_noise_and_moving_obstacles_anew_at_the_spawn_while_time_go
 
 
 @every_combination
-def test_distances_are_those_of_an_analytic_ray_cast_to_where_obstacles_are_by_then(make: Make, model: str) -> None:
+def test_distances_are_those_of_an_analytic_ray_cast_to_where_obstacles_are_by_then(make, model):
     sim = make()
     _run(sim)
     obstacles = tuple(replace(obstacle, pose=obstacle.at(SECONDS)) for obstacle in sim.world.obstacles)
@@ -90,7 +90,7 @@ def test_distances_are_those_of_an_analytic_ray_cast_to_where_obstacles_are_by_t
 
 
 @every_combination
-def test_each_sensor_keeps_its_rate_and_stamps_are_those_of_its_period(make: Make) -> None:
+def test_each_sensor_keeps_its_rate_and_stamps_are_those_of_its_period(make):
     sim = make()
     subscriptions, counts, ticks, stamps = everything(sim), dict.fromkeys(RATES, 0), [0, 0], []
     for _ in range(SECONDS * sim.rate):
@@ -107,8 +107,8 @@ def test_each_sensor_keeps_its_rate_and_stamps_are_those_of_its_period(make: Mak
 
 @every_combination
 def test_robot_that_is_asked_for_too_much_accelerates_to_its_limits_within_its_limits(
-    make: Make,
-) -> None:
+    make,
+):
     sim = make()
     limits, dt = sim.fleet.limits[0], 1.0 / sim.rate
     speeds = [0.0]
@@ -124,7 +124,7 @@ def test_robot_that_is_asked_for_too_much_accelerates_to_its_limits_within_its_l
 @every_engine
 @every_model
 @pytest.mark.parametrize("world", CLOSED)
-def test_robot_stops_upright_at_a_wall_with_turning_wheels_and_can_back_out(make: Make) -> None:
+def test_robot_stops_upright_at_a_wall_with_turning_wheels_and_can_back_out(make):
     sim = make()
     _drive(sim, Twist2D(0.2), 30.0, sim.touching)
     assert sim.touching(), "there is a wall ahead"
@@ -139,7 +139,7 @@ def test_robot_stops_upright_at_a_wall_with_turning_wheels_and_can_back_out(make
     assert not sim.touching() and not _bumper(sim)
 
 
-def _drive(sim: Simulator, twist: Twist2D, seconds: float, until: Callable[[], bool] = lambda: False) -> None:
+def _drive(sim, twist, seconds, until=lambda: False):
     """Command a velocity ten times a second, until a condition holds or for a time [s]."""
     for _ in range(round(10 * seconds)):
         if until():
@@ -150,7 +150,7 @@ def _drive(sim: Simulator, twist: Twist2D, seconds: float, until: Callable[[], b
             sim.advance({}, end - sim.steps)
 
 
-def _bumper(sim: Simulator) -> bool:
+def _bumper(sim):
     """What the bumper says next."""
     while True:
         due = sim.advance({"bumper": [0]})
@@ -158,16 +158,14 @@ def _bumper(sim: Simulator) -> bool:
             return sim.sensors.bumper.touching[0]
 
 
-def _odom(sim: Simulator) -> "List[float]":
+def _odom(sim):
     """The last pose of odometry."""
     return sim.sensors.odometry.poses[0].tolist()
 
 
 @every_model
 @pytest.mark.parametrize("twist", [Twist2D(0.2), Twist2D(-0.2), Twist2D(0.0, 1.0), Twist2D(0.0, -1.8)])
-def test_two_metres_and_a_full_turn_are_accurate_and_a_robot_does_not_drift(
-    simulator: Make, model: str, twist: Twist2D
-) -> None:
+def test_two_metres_and_a_full_turn_are_accurate_and_a_robot_does_not_drift(simulator, model, twist):
     sim = simulator(model=model)
     for _ in range(round((2.0 / abs(twist.v) if twist.v else 2.0 * math.pi / abs(twist.w)) * sim.rate)):
         sim.command(twist)
@@ -182,7 +180,7 @@ def test_two_metres_and_a_full_turn_are_accurate_and_a_robot_does_not_drift(
 
 
 @every_model
-def test_robot_stays_upright_at_its_highest_speeds(simulator: Make, model: str) -> None:
+def test_robot_stays_upright_at_its_highest_speeds(simulator, model):
     sim = simulator(model=model)
     limits, leans = sim.fleet.limits[0], []
     for twist in (Twist2D(limits.max_v), STANDSTILL, Twist2D(0.0, limits.max_w)):
@@ -193,7 +191,7 @@ def test_robot_stays_upright_at_its_highest_speeds(simulator: Make, model: str) 
 
 
 @every_engine
-def test_engine_without_slip_drives_an_exact_arc(simulator: Make, engine: str) -> None:
+def test_engine_without_slip_drives_an_exact_arc(simulator, engine):
     sim = simulator(max_linear_acceleration=1e3, max_angular_acceleration=1e3, **ENGINES[engine])
     _drive(sim, Twist2D(0.15, 0.4), 5.0)
     pose, radius = sim.world_from_footprint(), 0.15 / 0.4

@@ -1,7 +1,5 @@
 """Commands, and how long a control tick in lockstep is held for its answers."""
 
-from typing import Optional
-
 import pytest
 from fakes import Owner
 from support import ORIGIN
@@ -14,29 +12,29 @@ AHEAD, BACK = Twist2D(0.1, 0.0), Twist2D(-0.1, 0.0)
 TICK = 10**8  # [ns]
 
 
-def lockstep(end: float, *nodes: ControllerId, **params: object) -> Owner:
+def lockstep(end, *nodes, **params):
     """As fast as possible, with these nodes connected, and a timeout of 3 s."""
     owner = Owner(end, real_time_factor=0.0, sync="lockstep", lockstep_timeout=3.0, **params)
     owner.nodes = {node.node for node in nodes}
     return owner
 
 
-def sends(owner: Owner, node: ControllerId, delay: float, twist: Optional[Twist2D] = AHEAD) -> None:
+def sends(owner, node, delay, twist=AHEAD):
     """Have a node send a command after a delay [s, wall] from now."""
     owner.post(delay, lambda: owner.running.controllers.command(node, twist))
 
 
-def answers(owner: Owner, node: ControllerId, stamp: int, delay: float, twist: Optional[Twist2D] = AHEAD) -> None:
+def answers(owner, node, stamp, delay, twist=AHEAD):
     owner.post(delay, lambda: owner.running.controllers.answer(node, stamp, twist))
 
 
-def waited(owner: Owner) -> float:
+def waited(owner):
     """Wall time of a run [s]."""
     return owner.clock.time - 100.0
 
 
 @pytest.mark.parametrize("sync", ["free", "lockstep"])
-def test_refused_command_leaves_the_previous_one_in_force(sync: str) -> None:
+def test_refused_command_leaves_the_previous_one_in_force(sync):
     owner = Owner(1.0, sync=sync)
     owner.nodes = {NODE.node}
     owner.running.controllers.command(NODE, AHEAD)
@@ -45,7 +43,7 @@ def test_refused_command_leaves_the_previous_one_in_force(sync: str) -> None:
     assert owner.simulator.velocity().v == pytest.approx(0.1)
 
 
-def test_refused_command_is_an_answer_in_lockstep() -> None:
+def test_refused_command_is_an_answer_in_lockstep():
     owner = lockstep(0.35, NODE)
     owner.on_tick = lambda _stamp: sends(owner, NODE, 0.01, None)
     owner.run()
@@ -54,16 +52,14 @@ def test_refused_command_is_an_answer_in_lockstep() -> None:
 
 
 @pytest.mark.parametrize("nodes, held", [([NODE], 5 * SILENCE_TIMEOUT), ([], 0.0)])
-def test_only_a_node_that_is_connected_costs_its_timeout_if_silent_and_is_no_miss(
-    nodes: "list[ControllerId]", held: float
-) -> None:
+def test_only_a_node_that_is_connected_costs_its_timeout_if_silent_and_is_no_miss(nodes, held):
     owner = lockstep(0.55, *nodes)
     owner.run()
     assert waited(owner) == pytest.approx(held)
     assert owner.events == [] and owner.running.controllers.lockstep.misses == 0
 
 
-def test_loop_at_the_ticks_rate_is_followed_from_its_third_command_on_however_slow_it_is() -> None:
+def test_loop_at_the_ticks_rate_is_followed_from_its_third_command_on_however_slow_it_is():
     owner = lockstep(1.05, NODE)
     owner.on_tick = lambda stamp: sends(owner, NODE, 0.01 if stamp <= 2 * TICK else 2.0)
     owner.run()
@@ -72,7 +68,7 @@ def test_loop_at_the_ticks_rate_is_followed_from_its_third_command_on_however_sl
     assert owner.running.controllers.lockstep.expected() == [NODE]
 
 
-def test_loop_at_half_the_rate_costs_a_silence_at_each_tick_between() -> None:
+def test_loop_at_half_the_rate_costs_a_silence_at_each_tick_between():
     owner = lockstep(1.05, NODE)
     owner.on_tick = lambda stamp: None if stamp // TICK % 2 else sends(owner, NODE, 0.01)
     owner.run()
@@ -80,7 +76,7 @@ def test_loop_at_half_the_rate_costs_a_silence_at_each_tick_between() -> None:
     assert owner.events == [] and owner.running.controllers.lockstep.misses == 0
 
 
-def test_loop_that_pauses_costs_one_timeout_and_one_warning_and_is_followed_again() -> None:
+def test_loop_that_pauses_costs_one_timeout_and_one_warning_and_is_followed_again():
     owner = lockstep(4.05, NODE)
     owner.on_tick = lambda stamp: None if 5 <= stamp // TICK < 35 else sends(owner, NODE, 0.01)
     owner.run()
@@ -90,11 +86,11 @@ def test_loop_that_pauses_costs_one_timeout_and_one_warning_and_is_followed_agai
 
 
 @pytest.mark.parametrize("first, second", [(NODE, OTHER), (OTHER, NODE)])
-def test_of_several_nodes_the_last_by_name_commands_the_robot(first: ControllerId, second: ControllerId) -> None:
+def test_of_several_nodes_the_last_by_name_commands_the_robot(first, second):
     owner = lockstep(0.55, NODE, OTHER)
     twists = {NODE: AHEAD, OTHER: BACK}
 
-    def both(_stamp: int) -> None:
+    def both(_stamp):
         sends(owner, first, 0.001, twists[first])
         sends(owner, second, 0.002, twists[second])
 
@@ -103,7 +99,7 @@ def test_of_several_nodes_the_last_by_name_commands_the_robot(first: ControllerI
     assert owner.simulator.velocity().v < 0.0
 
 
-def test_node_that_answers_ticks_is_waited_for_from_its_first_answer_on() -> None:
+def test_node_that_answers_ticks_is_waited_for_from_its_first_answer_on():
     owner = lockstep(0.55, ANSWERING)
     owner.on_tick = lambda stamp: answers(owner, ANSWERING, stamp, 0.01 if stamp == TICK else 2.0)
     owner.run()
@@ -113,7 +109,7 @@ def test_node_that_answers_ticks_is_waited_for_from_its_first_answer_on() -> Non
     assert owner.simulator.world_from_footprint().x > 0.03
 
 
-def test_node_that_answers_while_time_stands_still_is_waited_for_at_the_first_tick() -> None:
+def test_node_that_answers_while_time_stands_still_is_waited_for_at_the_first_tick():
     owner = lockstep(0.15, ANSWERING, start_paused=True)
     answers(owner, ANSWERING, 0, 0.5, None)
     owner.post(1.0, lambda: owner.running.set_paused(False))
@@ -122,10 +118,10 @@ def test_node_that_answers_while_time_stands_still_is_waited_for_at_the_first_ti
     assert waited(owner) == pytest.approx(3.0) and owner.running.controllers.lockstep.misses == 0
 
 
-def test_answering_node_that_hangs_costs_one_timeout_and_is_expected_after_two_answers() -> None:
+def test_answering_node_that_hangs_costs_one_timeout_and_is_expected_after_two_answers():
     owner = lockstep(0.85, ANSWERING)
 
-    def answer(stamp: int) -> None:
+    def answer(stamp):
         if not 3 <= stamp // TICK < 5:
             answers(owner, ANSWERING, stamp, 0.01 if stamp // TICK < 7 else 2.0)
 
@@ -135,10 +131,10 @@ def test_answering_node_that_hangs_costs_one_timeout_and_is_expected_after_two_a
     assert waited(owner) == pytest.approx(2 * 0.01 + 3.0 + SILENCE_TIMEOUT + 2 * 0.01 + 2 * 2.0)
 
 
-def test_commands_of_an_answering_node_are_ignored() -> None:
+def test_commands_of_an_answering_node_are_ignored():
     owner = lockstep(0.35, ANSWERING)
 
-    def answer(stamp: int) -> None:
+    def answer(stamp):
         sends(owner, ANSWERING, 0.001, BACK)
         answers(owner, ANSWERING, stamp, 0.002)
 
@@ -148,7 +144,7 @@ def test_commands_of_an_answering_node_are_ignored() -> None:
     assert owner.simulator.velocity().v > 0.0
 
 
-def test_answer_to_a_tick_that_time_has_not_reached_is_ignored() -> None:
+def test_answer_to_a_tick_that_time_has_not_reached_is_ignored():
     owner = lockstep(0.35, ANSWERING)
     controllers = owner.running.controllers
     controllers.answer(ANSWERING, 0, None)
@@ -159,7 +155,7 @@ def test_answer_to_a_tick_that_time_has_not_reached_is_ignored() -> None:
     assert owner.simulator.world_from_footprint() == ORIGIN
 
 
-def test_expected_node_that_disconnects_is_not_waited_for_and_its_robot_is_stopped() -> None:
+def test_expected_node_that_disconnects_is_not_waited_for_and_its_robot_is_stopped():
     owner = lockstep(1.0, ANSWERING)
     owner.on_tick = lambda stamp: answers(owner, ANSWERING, stamp, 0.0) if stamp == TICK else None
     owner.clock.at(0.2, owner.nodes.clear)
@@ -169,7 +165,7 @@ def test_expected_node_that_disconnects_is_not_waited_for_and_its_robot_is_stopp
     assert waited(owner) == pytest.approx(0.25, abs=0.06)
 
 
-def test_another_nodes_command_outlives_one_that_disconnects() -> None:
+def test_another_nodes_command_outlives_one_that_disconnects():
     owner = lockstep(0.35, NODE, ANSWERING)
     answers(owner, ANSWERING, 0, 0.0)
     owner.on_tick = lambda _stamp: sends(owner, NODE, 0.01)
@@ -179,11 +175,11 @@ def test_another_nodes_command_outlives_one_that_disconnects() -> None:
     assert owner.simulator.velocity().v > 0.0
 
 
-def test_reset_while_time_is_held_waits_for_nobody_at_this_tick() -> None:
+def test_reset_while_time_is_held_waits_for_nobody_at_this_tick():
     owner = lockstep(0.35, NODE, ANSWERING)
     answers(owner, ANSWERING, 0, 0.0, None)
 
-    def answer(stamp: int) -> None:
+    def answer(stamp):
         if stamp == TICK:
             owner.post(0.01, owner.simulator.reset)
         answers(owner, ANSWERING, stamp, 0.1, None)

@@ -1,7 +1,6 @@
 """What other threads ask of the owner of a simulation."""
 
 import threading
-from typing import List
 
 import pytest
 
@@ -9,15 +8,15 @@ from aro_robocop_goto_as.errors import ShutdownError, WorldError
 from aro_robocop_goto_as.simulation.jobs import Jobs, WallClock
 
 
-def test_call_from_another_thread_returns_the_jobs_result_or_raises_its_error() -> None:
+def test_call_from_another_thread_returns_the_jobs_result_or_raises_its_error():
     done = threading.Event()
     jobs = Jobs(WallClock(), done.is_set)
-    outcomes: List[object] = []
+    outcomes = []
 
-    def refuse() -> None:
+    def refuse():
         raise WorldError("no such model")
 
-    def caller() -> None:
+    def caller():
         outcomes.append(jobs.call(threading.get_ident))
         with pytest.raises(WorldError, match="no such model"):
             jobs.call(refuse)
@@ -34,7 +33,7 @@ def test_call_from_another_thread_returns_the_jobs_result_or_raises_its_error() 
         jobs.call(lambda: None)
 
 
-def test_queued_jobs_are_run_and_those_that_they_post_are_left_for_later() -> None:
+def test_queued_jobs_are_run_and_those_that_they_post_are_left_for_later():
     jobs, ran = Jobs(WallClock(), lambda: False), []
     jobs.post(lambda: jobs.post(lambda: ran.append("later")))
     jobs.post(lambda: ran.append("queued"))

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import Callable, Dict, List, Tuple
+from typing import Callable
 
 import pytest
 from support import ORIGIN, driven, everything
@@ -14,10 +14,10 @@ from aro_robocop_goto_as.simulation.simulator import Simulator
 
 Make = Callable[..., Simulator]
 KINEMATIC = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}
-DRIVES: List[Dict[str, object]] = [{"drive": "wheels"}, KINEMATIC]
+DRIVES = [{"drive": "wheels"}, KINEMATIC]
 
 
-def _odom(sim: Simulator) -> Pose2D:
+def _odom(sim):
     """odom_from_footprint at the next update."""
     due = None
     while due is None or not due.of("odom"):
@@ -26,7 +26,7 @@ def _odom(sim: Simulator) -> Pose2D:
 
 
 @pytest.mark.parametrize("params", DRIVES)
-def test_robot_placed_in_a_wall_touches_it_at_once(simulator: Make, params: Dict[str, object]) -> None:
+def test_robot_placed_in_a_wall_touches_it_at_once(simulator, params):
     sim = simulator("stage_1", Pose2D(1.86, 0.0), **params)
     sim.advance({})
     assert sim.newly_placed_in_contact() == [0] and sim.newly_placed_in_contact() == []
@@ -38,7 +38,7 @@ def test_robot_placed_in_a_wall_touches_it_at_once(simulator: Make, params: Dict
 # Rates, noise, subscriptions
 
 
-def test_every_rate_parameter_is_kept(simulator: Make) -> None:
+def test_every_rate_parameter_is_kept(simulator):
     rates = dict(scan=3, odom=4, joint_state=5, imu=6, ground_truth=8, bumper=10, camera=12)
     given = {f"{name}_rate": rate for name, rate in rates.items()}
     given.update(physics_rate=600, clock_rate=1, control_rate=2, camera_width=8, camera_height=6)
@@ -50,10 +50,10 @@ def test_every_rate_parameter_is_kept(simulator: Make) -> None:
 
 
 @pytest.mark.parametrize("sensors", [(), ("odom", "scan"), ("imu",)])
-def test_advancing_to_what_is_due_next_equals_single_steps(simulator: Make, sensors: Tuple[str, ...]) -> None:
-    def run(most: int) -> "list[object]":
+def test_advancing_to_what_is_due_next_equals_single_steps(simulator, sensors):
+    def run(most):
         sim = simulator("stage_4", Pose2D(-0.7, 0.0), drive="kinematic", moving=True)
-        seen: list[object] = []
+        seen = []
         while sim.steps < 240:
             sim.command(Twist2D(0.1, 0.5) if sim.steps < 120 else STANDSTILL)
             due = sim.advance({sensor: [0] for sensor in sensors}, most)
@@ -65,8 +65,8 @@ def test_advancing_to_what_is_due_next_equals_single_steps(simulator: Make, sens
     assert run(1) == run(10**9)
 
 
-def test_what_is_measured_does_not_depend_on_what_else_is_subscribed(simulator: Make) -> None:
-    def run(listening: bool) -> "tuple[list[float], Pose2D]":
+def test_what_is_measured_does_not_depend_on_what_else_is_subscribed(simulator):
+    def run(listening):
         sim = simulator("stage_2", Pose2D(), Pose2D(1.0, 0.0))
         for step in range(120):
             sim.command(Twist2D(0.2, 0.3))
@@ -79,12 +79,12 @@ def test_what_is_measured_does_not_depend_on_what_else_is_subscribed(simulator: 
 # Odometry in the simulator
 
 
-def _odom_and_truth(sim: Simulator) -> Tuple[Pose2D, Pose2D]:
+def _odom_and_truth(sim):
     driven(sim, Twist2D(0.2, 0.0), 8.0, ["odom"])
     return Pose2D(*sim.sensors.odometry.poses[0].tolist()), sim.world_from_footprint()
 
 
-def test_slip_makes_odometry_overestimate_and_turn_reproducibly(simulator: Make) -> None:
+def test_slip_makes_odometry_overestimate_and_turn_reproducibly(simulator):
     odom, truth = _odom_and_truth(simulator("empty", odom_slip=0.05, **KINEMATIC))
     assert odom.x > 1.02 * truth.x
     assert odom.yaw != 0.0
@@ -92,7 +92,7 @@ def test_slip_makes_odometry_overestimate_and_turn_reproducibly(simulator: Make)
     assert _odom_and_truth(simulator("empty", odom_slip=0.05, seed=2, **KINEMATIC))[0] != odom
 
 
-def test_odometry_of_the_world_is_the_truth_wherever_the_robot_is_placed(simulator: Make) -> None:
+def test_odometry_of_the_world_is_the_truth_wherever_the_robot_is_placed(simulator):
     errors = dict(odom_wheel_radius_error=0.1, odom_slip=0.1, encoder_tick=0.1)
     sim = simulator("stage_4", Pose2D(-0.7, 0.0, 0.5), odom_source="world", **errors)
     assert _odom(sim) == sim.world_from_footprint()
@@ -103,7 +103,7 @@ def test_odometry_of_the_world_is_the_truth_wherever_the_robot_is_placed(simulat
     assert sim.map_from_odom() == Pose2D()
 
 
-def test_true_localization_follows_odometrys_errors(simulator: Make) -> None:
+def test_true_localization_follows_odometrys_errors(simulator):
     sim = simulator("empty", localization="truth", odom_wheel_radius_error=0.1, **KINEMATIC)
     odom, truth = _odom_and_truth(sim)
     assert compose(sim.map_from_odom(), odom) == pytest.approx(truth)
@@ -116,9 +116,7 @@ def test_true_localization_follows_odometrys_errors(simulator: Make) -> None:
 @pytest.mark.parametrize(
     "params, accuracy", [({}, 1e-9), ({"encoder_tick": 0.0015}, 1e-3), ({"odom_slip": 0.05}, 0.012)]
 )
-def test_placing_the_robot_between_odometry_updates_loses_no_travel(
-    simulator: Make, params: Dict[str, float], accuracy: float
-) -> None:
+def test_placing_the_robot_between_odometry_updates_loses_no_travel(simulator, params, accuracy):
     sim = simulator("empty", drive="kinematic", max_linear_acceleration=1e3, odom_rate=10, **params)
     driven(sim, Twist2D(0.2, 0.0), (240 + 23) / 240, ["odom"])  # 23 of the 24 steps between two updates
     sim.place(Pose2D(1.0, -1.0, 1.0))
@@ -128,7 +126,7 @@ def test_placing_the_robot_between_odometry_updates_loses_no_travel(
 # Several robots
 
 
-def test_map_of_a_world_shows_what_is_at_the_scanners_height_and_what_robots_reach(simulator: Make) -> None:
+def test_map_of_a_world_shows_what_is_at_the_scanners_height_and_what_robots_reach(simulator):
     occupancy = simulator("stage_1", ORIGIN, Pose2D(9.0, 0.0)).occupancy()
 
     row = occupancy.cells[int(-occupancy.origin.y / occupancy.resolution)]
@@ -138,7 +136,7 @@ def test_map_of_a_world_shows_what_is_at_the_scanners_height_and_what_robots_rea
     assert (at_start, before_wall, wall, outside) == (FREE, FREE, OCCUPIED, FREE)
 
 
-def test_map_of_a_world_made_from_a_map_stays_as_it_was_loaded_when_a_model_is_deleted(simulator: Make) -> None:
+def test_map_of_a_world_made_from_a_map_stays_as_it_was_loaded_when_a_model_is_deleted(simulator):
     sim = simulator("stage_1", ORIGIN)
     loaded = sim.occupancy()
     sim.change_world(replace(sim.world, occupancy=loaded, obstacles=()))
@@ -146,7 +144,7 @@ def test_map_of_a_world_made_from_a_map_stays_as_it_was_loaded_when_a_model_is_d
 
 
 @pytest.mark.parametrize("params", DRIVES)
-def test_two_robots_driving_towards_each_other_collide_and_stop(simulator: Make, params: Dict[str, object]) -> None:
+def test_two_robots_driving_towards_each_other_collide_and_stop(simulator, params):
     sim = simulator("empty", ORIGIN, Pose2D(0.6, 0.0, math.pi), **{**params, "cmd_vel_timeout": 0.0})
     sim.command(Twist2D(0.15, 0.0), robot=0)
     driven(sim, Twist2D(0.15, 0.0), 4.0, robot=1)
@@ -155,7 +153,7 @@ def test_two_robots_driving_towards_each_other_collide_and_stop(simulator: Make,
 
 
 @pytest.mark.parametrize("drive", ["wheels", "kinematic"])
-def test_a_robot_has_room_where_it_touches_neither_a_wall_nor_another_robot(simulator: Make, drive: str) -> None:
+def test_a_robot_has_room_where_it_touches_neither_a_wall_nor_another_robot(simulator, drive):
     sim = simulator("stage_1", ORIGIN, Pose2D(1.0, 0.0), drive=drive)
     for pose, reason in (
         (

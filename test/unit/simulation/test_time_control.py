@@ -8,7 +8,7 @@ from aro_robocop_goto_as.simulation.time_control import REST, REST_PERIOD, Facto
 RATE = 240  # [Hz] of the steps
 
 
-def test_factor_zero_waits_for_rests_only() -> None:
+def test_factor_zero_waits_for_rests_only():
     wall = FakeClock()
     timing = Pacer(0.0, RATE, wall.now)
     assert timing.wait_time(10**12) == 0.0
@@ -17,7 +17,7 @@ def test_factor_zero_waits_for_rests_only() -> None:
     assert timing.wait_time(10**12) == 0.0
 
 
-def test_long_lag_is_dropped_and_not_caught_up_in_a_burst() -> None:
+def test_long_lag_is_dropped_and_not_caught_up_in_a_burst():
     wall = FakeClock()
     timing = Pacer(1.0, RATE, wall.now)
     wall.time += 5.0
@@ -26,7 +26,7 @@ def test_long_lag_is_dropped_and_not_caught_up_in_a_burst() -> None:
     assert timing.wait_time(264) == pytest.approx(0.1)
 
 
-def test_report_says_how_fast_time_went_what_a_step_took_and_how_much_lag_there_is_and_was_dropped() -> None:
+def test_report_says_how_fast_time_went_what_a_step_took_and_how_much_lag_there_is_and_was_dropped():
     wall = FakeClock()
     timing = Pacer(2.0, RATE, wall.now)
     wall.time += 0.9

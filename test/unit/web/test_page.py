@@ -23,11 +23,11 @@ from aro_robocop_goto_as.web.page import (
 SCENES = [(393, 400), (1081, 1099), (250, 900), (457, 293), (955, 800), (580, 620), (1585, 1000)]  # [pixel]
 
 
-def room(low=(-2.5, -2.5), high=(2.5, 2.5)) -> np.ndarray:
+def room(low=(-2.5, -2.5), high=(2.5, 2.5)):
     return np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (0.0, HEIGHT)])
 
 
-def server_of(*sizes) -> SimpleNamespace:
+def server_of(*sizes):
     clients = [
         SimpleNamespace(camera=SimpleNamespace(image_width=width, image_height=height, on_update=lambda _: None))
         for width, height in sizes
@@ -41,7 +41,7 @@ def server_of(*sizes) -> SimpleNamespace:
     return server
 
 
-def seen(camera: SimpleNamespace, points: np.ndarray) -> np.ndarray:
+def seen(camera, points):
     """Where points (n, 3) [m] appear: (n, 2) [pixel] from the left and from the top."""
     scale, (ahead, up) = (
         camera.image_height / 2.0 / math.tan(FIELD / 2.0),
@@ -52,7 +52,7 @@ def seen(camera: SimpleNamespace, points: np.ndarray) -> np.ndarray:
     return np.array((camera.image_width, camera.image_height)) / 2.0 + scale * offset
 
 
-def expect_filled_from_the_middle(camera: SimpleNamespace, corners: np.ndarray) -> None:
+def expect_filled_from_the_middle(camera, corners):
     size = np.array((camera.image_width, camera.image_height))
     low, high = seen(camera, corners).min(axis=0), seen(camera, corners).max(axis=0)
     assert (low + high) / 2.0 == pytest.approx(size / 2.0, abs=0.05 * camera.image_height)
@@ -69,13 +69,13 @@ def expect_filled_from_the_middle(camera: SimpleNamespace, corners: np.ndarray) 
         ([(-9.0, 3.0, 0.0), (-2.0, 9.0, 0.0)], room((-9.0, 0.0), (0.0, 9.0))),
     ],
 )
-def test_a_room_around_the_origin_or_a_larger_world_fills_the_scene(size, places, corners) -> None:
+def test_a_room_around_the_origin_or_a_larger_world_fills_the_scene(size, places, corners):
     server = server_of(size)
     server.cameras.show(places)
     expect_filled_from_the_middle(server.get_clients()[0].camera, corners)
 
 
-def test_a_view_that_somebody_has_chosen_stays_when_the_same_world_is_drawn_anew() -> None:
+def test_a_view_that_somebody_has_chosen_stays_when_the_same_world_is_drawn_anew():
     server, places = server_of((1300, 800)), [(8.0, 0.0, 0.0)]
     server.cameras.show(places)
     camera = server.get_clients()[0].camera
@@ -91,14 +91,14 @@ def camera_that_reports(width=390, height=844):
     return server, camera, lambda: reported[0](camera)
 
 
-def test_a_browser_that_reports_the_first_view_later_is_turned_again() -> None:
+def test_a_browser_that_reports_the_first_view_later_is_turned_again():
     server, camera, report = camera_that_reports()
     shown, camera.position = camera.position, server.initial_camera.position
     report()
     assert camera.position == pytest.approx(shown)
 
 
-def test_the_room_fills_the_scene_again_when_a_phone_is_turned_and_turned_back() -> None:
+def test_the_room_fills_the_scene_again_when_a_phone_is_turned_and_turned_back():
     _, camera, report = camera_that_reports()
     for _ in range(2):
         camera.image_width, camera.image_height = camera.image_height, camera.image_width
@@ -106,7 +106,7 @@ def test_the_room_fills_the_scene_again_when_a_phone_is_turned_and_turned_back()
         expect_filled_from_the_middle(camera, room())
 
 
-def test_a_view_that_somebody_has_chosen_stays_when_a_phone_is_turned() -> None:
+def test_a_view_that_somebody_has_chosen_stays_when_a_phone_is_turned():
     _, camera, report = camera_that_reports()
     camera.position = chosen = np.array((1.0, 2.0, 3.0))
     camera.image_width, camera.image_height = camera.image_height, camera.image_width
@@ -115,7 +115,7 @@ def test_a_view_that_somebody_has_chosen_stays_when_a_phone_is_turned() -> None:
 
 
 @pytest.mark.parametrize("height, shown", [(-3.0, 3.0), (0.05, LOWEST), (1.0, 1.0)])
-def test_a_camera_that_is_turned_to_below_the_floor_looks_at_the_same_point_from_above(height, shown) -> None:
+def test_a_camera_that_is_turned_to_below_the_floor_looks_at_the_same_point_from_above(height, shown):
     _, camera, report = camera_that_reports()
     camera.position, camera.look_at = (1.0, 2.0, height), (0.5, 0.5, 0.0)
     report()
@@ -123,7 +123,7 @@ def test_a_camera_that_is_turned_to_below_the_floor_looks_at_the_same_point_from
 
 
 @given(st.floats(-20, 20), st.floats(-20, 20), st.floats(0.1, 20), st.floats(-9, 9), st.floats(-9, 9))
-def test_a_click_hits_the_floor_where_the_ray_through_it_does(x, y, height, to_x, to_y) -> None:
+def test_a_click_hits_the_floor_where_the_ray_through_it_does(x, y, height, to_x, to_y):
     found = floor_point((x, y, height), (to_x - x, to_y - y, -height))
     assert found == pytest.approx((to_x, to_y), abs=1e-9)
 
@@ -140,10 +140,10 @@ def test_a_click_hits_the_floor_where_the_ray_through_it_does(x, y, height, to_x
         ((0.0, 0.0, 1.0), (1.01 * MAX_CLICK, 0.0, -1.0)),
     ],
 )
-def test_a_click_into_the_sky_or_beyond_the_horizon_hits_nothing(origin, direction) -> None:
+def test_a_click_into_the_sky_or_beyond_the_horizon_hits_nothing(origin, direction):
     assert floor_point(origin, direction) is None
 
 
-def test_a_page_that_is_hidden_and_has_no_size_gets_the_first_view() -> None:
+def test_a_page_that_is_hidden_and_has_no_size_gets_the_first_view():
     server = server_of((0, 0))
     assert server.get_clients()[0].camera.position == pytest.approx(server.initial_camera.position)

@@ -1,6 +1,6 @@
 """What is sent to the browsers when groups of shapes change."""
 
-from typing import Any, List
+from typing import List
 
 import pytest
 
@@ -13,12 +13,12 @@ AWAY = Pose3D((1.0, 0.0, 0.0))
 class Api:
     """Stands in for the scene of a viser server: names of the nodes that are there, and all that were added."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.nodes: List[str] = []
         self.added: List[Handle] = []
 
-    def __getattr__(self, name: str) -> Any:
-        def add(node: str, *arguments: Any, **options: Any) -> Any:
+    def __getattr__(self, name):
+        def add(node, *arguments, **options):
             self.nodes.append(node)
             self.added.append(Handle(self, node))
             return self.added[-1]
@@ -27,26 +27,26 @@ class Api:
 
 
 class Handle:
-    def __init__(self, api: Api, name: str) -> None:
+    def __init__(self, api, name):
         self.api, self.name = api, name
 
-    def remove(self) -> None:
+    def remove(self):
         self.api.nodes = [node for node in self.api.nodes if not (node + "/").startswith(self.name + "/")]
 
 
 @pytest.fixture
-def api() -> Api:
+def api():
     return Api()
 
 
 @pytest.fixture
-def scene(api: Api) -> PageScene:
+def scene(api):
     scene = PageScene(api)
     api.nodes, api.added = [], []
     return scene
 
 
-def test_a_group_shows_its_shapes_and_nothing_that_it_held_before(api: Api, scene: PageScene) -> None:
+def test_a_group_shows_its_shapes_and_nothing_that_it_held_before(api, scene):
     scene.show("world", {"a": (Shape(BOX), Pose3D()), "b": (Shape(BOX), Pose3D())})
     assert len(api.nodes) == 2
     scene.show("world", {"b": (Shape(BOX), Pose3D())})
@@ -55,7 +55,7 @@ def test_a_group_shows_its_shapes_and_nothing_that_it_held_before(api: Api, scen
     assert api.nodes == []
 
 
-def test_a_shape_is_moved_only_when_its_pose_changes(api: Api, scene: PageScene) -> None:
+def test_a_shape_is_moved_only_when_its_pose_changes(api, scene):
     for pose in (Pose3D(), Pose3D((1e-6, 0.0, 0.0))):
         scene.show("world", {"a": (Shape(BOX), pose)})
     assert not hasattr(api.added[0], "position")
@@ -63,7 +63,7 @@ def test_a_shape_is_moved_only_when_its_pose_changes(api: Api, scene: PageScene)
     assert api.added[0].position == (1.0, 0.0, 0.0) and len(api.added) == 1
 
 
-def test_the_parts_of_a_body_move_and_go_with_it(api: Api, scene: PageScene) -> None:
+def test_the_parts_of_a_body_move_and_go_with_it(api, scene):
     body = Shape(BODY, parts=((Shape(BOX), AWAY), (Shape(BOX), AWAY)))
     scene.show("robots", {"a": (body, Pose3D())})
     assert len(api.nodes) == 3 and scene.draws("robots")

@@ -3,7 +3,7 @@
 from aro_robocop_goto_as.web import text
 
 
-def test_markup_in_names_and_messages_is_shown_as_text() -> None:
+def test_markup_in_names_and_messages_is_shown_as_text():
     attack = "<img src=x onerror=alert(1)>"
     for content in (
         text.alert(attack),
@@ -16,5 +16,5 @@ def test_markup_in_names_and_messages_is_shown_as_text() -> None:
         assert "<img" not in content and "&lt;img" in content
 
 
-def test_an_endless_message_is_cut() -> None:
+def test_an_endless_message_is_cut():
     assert len(text.plain("x" * 10_000)) == text.MAX_LENGTH

@@ -19,7 +19,7 @@ URDF = """<robot name="r"><!-- a comment -->
   <link name="empty"/></robot>"""
 
 
-def test_a_description_is_read_with_its_colours_and_without_meshes_that_are_not_there() -> None:
+def test_a_description_is_read_with_its_colours_and_without_meshes_that_are_not_there():
     links = read_links(URDF)
     assert list(links) == ["base"] and links["base"].kind == BODY
     (box, where), (cylinder, _) = links["base"].parts
@@ -38,12 +38,12 @@ def test_a_description_is_read_with_its_colours_and_without_meshes_that_are_not_
         (URDF.replace('"0.5"', '"wide"'), "robot_description"),
     ],
 )
-def test_what_is_no_description_is_refused_with_the_reason(urdf: str, reason: str) -> None:
+def test_what_is_no_description_is_refused_with_the_reason(urdf, reason):
     with pytest.raises(RobotModelError, match=reason):
         read_links(urdf)
 
 
-def test_the_descriptions_of_all_models_are_drawn() -> None:
+def test_the_descriptions_of_all_models_are_drawn():
     for name in os.listdir(os.path.join(ROOT, "urdf")):
         with open(os.path.join(ROOT, "urdf", name)) as stream:
             links = read_links(stream.read())

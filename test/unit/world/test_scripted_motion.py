@@ -66,7 +66,7 @@ def test_robot_is_not_pushed_through_a_wall(burger):
         assert sim.world_from_footprint().x <= 0.15 - 0.105
 
 
-def test_circles_are_put_where_the_motions_of_their_models_carry_them() -> None:
+def test_circles_are_put_where_the_motions_of_their_models_carry_them():
     circles = np.array([(7.0, 8.0, 0.9), (1.0, 2.5, 0.1)])
     move = moving(circles, [None, PATROL])
     farthest = move(5.0)

@@ -5,18 +5,17 @@ from support import model_named, world_named
 
 from aro_robocop_goto_as.errors import ParameterError
 from aro_robocop_goto_as.geometry import Pose2D
-from aro_robocop_goto_as.robot.model import RobotModel
 from aro_robocop_goto_as.simulation.factory import robots_from
 from aro_robocop_goto_as.simulation.params import SimParams
 from aro_robocop_goto_as.world.spawn_texts import parse_spawn
 
 
-def test_default_is_one_robot_without_a_name(burger: RobotModel) -> None:
+def test_default_is_one_robot_without_a_name(burger):
     (robot,) = robots_from(SimParams().robots, world_named("stage_4"), lambda _: burger)
     assert (robot.name, robot.spawn) == ("", Pose2D(-0.7, 0.0, 0.0))
 
 
-def test_a_list_may_name_a_model_for_a_robot() -> None:
+def test_a_list_may_name_a_model_for_a_robot():
     p = SimParams.of(robots="red 0 0; blue:waffle 1 -1;", model="turtlebot2").robots
     robots = robots_from(p, world_named("empty"), model_named)
     assert [robot.model.name for robot in robots] == ["turtlebot2", "turtlebot3_waffle"]
@@ -35,13 +34,13 @@ def test_a_list_may_name_a_model_for_a_robot() -> None:
         ("red 1e7 0", "numbers within +-1e+06, got '1e7 0'"),
     ],
 )
-def test_malformed_list_is_refused_by_name(burger: RobotModel, text: str, expected: str) -> None:
+def test_malformed_list_is_refused_by_name(burger, text, expected):
     with pytest.raises(ParameterError) as refusal:
         robots_from(SimParams.of(robots=text).robots, world_named("empty"), lambda _: burger)
     assert expected in str(refusal.value)
 
 
-def test_a_spawn_is_two_or_three_numbers() -> None:
+def test_a_spawn_is_two_or_three_numbers():
     assert parse_spawn(" ", Pose2D(1, 2, 3)) == Pose2D(1, 2, 3)
     assert parse_spawn("1 -2", Pose2D()) == Pose2D(1.0, -2.0, 0.0)
     assert parse_spawn("1, 2, 0.5", Pose2D()) == Pose2D(1.0, 2.0, 0.5)

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from typing import Callable, Iterable, List, Sequence, Tuple
 
 import pytest
 from grading_records import LIMITS
@@ -17,7 +16,7 @@ SAME_WORDS = "do not tell a goal that is active from one that has succeeded, was
 BEFORE, NEWER = rec.Click(1.0, "odom", 1.2, -0.4, 1.2, -0.4), rec.Click(5.0, "odom", -0.6, 0.9, -0.6, 0.9)
 
 
-def _clicked(x: float, y: float, *lines: Tuple[float, str], servers: Tuple[str, ...] = ()) -> Record:
+def _clicked(x, y, *lines, servers=()):
     """A click becomes a goal at (x, y), which is ACTIVE at once, and SUCCEEDED after 20 s."""
     return Record(
         "click",
@@ -31,7 +30,7 @@ def _clicked(x: float, y: float, *lines: Tuple[float, str], servers: Tuple[str, 
     )
 
 
-def _reported(active: str, succeeded: str) -> Record:
+def _reported(active, succeeded):
     return _clicked(1.2, -0.4, *((float(t), active if t < 20 else succeeded) for t in range(2, 40, 4)))
 
 
@@ -57,7 +56,7 @@ def _reported(active: str, succeeded: str) -> Record:
         ("goal state 1 (0 PENDING, 1 ACTIVE, 3 SUCCEEDED)", "goal state 3 (0 PENDING, 1 ACTIVE, 3 SUCCEEDED)"),
     ],
 )
-def test_true_reports_and_those_in_other_words_pass(active: str, succeeded: str) -> None:
+def test_true_reports_and_those_in_other_words_pass(active, succeeded):
     assert CHECKS["reports_status"](_reported(active, succeeded), LIMITS) is PASSED
 
 
@@ -79,7 +78,7 @@ def test_true_reports_and_those_in_other_words_pass(active: str, succeeded: str)
         ("server: <bound method A.get_state of <a.A object at 0x7f>>", "x", 'as in "server: <bound method'),
     ],
 )
-def test_reports_that_are_empty_or_untrue_are_named(active: str, succeeded: str, words: str) -> None:
+def test_reports_that_are_empty_or_untrue_are_named(active, succeeded, words):
     verdict = CHECKS["reports_status"](_reported(active, succeeded), LIMITS)
     assert isinstance(verdict, Failed) and words in verdict.cause
 
@@ -94,7 +93,7 @@ DRIVES = (
 KEPT = 5.0  # [s] for which an ended goal stays in an action server's status
 
 
-def _states(time: float, kept: float = math.inf) -> List[int]:
+def _states(time, kept=math.inf):
     """The states of all goals at a time, the newest goal's last; without those that ended `kept` [s] before."""
     return [
         rec.ACTIVE if time < sent + active else end
@@ -103,16 +102,16 @@ def _states(time: float, kept: float = math.inf) -> List[int]:
     ]
 
 
-def _named(states: Iterable[int]) -> List[str]:
+def _named(states):
     return [f"state: {rec.STATUS_NAMES[state]}" for state in states]
 
 
-def _by_the_clock(time: float) -> int:
+def _by_the_clock(time):
     """ACTIVE for 20 s after each click, then SUCCEEDED."""
     return rec.ACTIVE if time < DRIVES[len(_states(time)) - 1][0] + 20.0 else rec.SUCCEEDED
 
 
-def _driven(report: Callable[[float], Iterable[str]], period: float) -> Record:
+def _driven(report, period):
     """A bridge whose timer reports these lines about a time."""
     goals, statuses = [], []
     for number, (sent, active, end) in enumerate(DRIVES):
@@ -153,13 +152,13 @@ LEGEND = "(0 PENDING, 1 ACTIVE, 2 PREEMPTED, 3 SUCCEEDED)"
         lambda time: [f"connected, {len(_states(time))} goals"],
     ],
 )
-def test_reports_that_follow_the_truth_pass_in_any_words(report: Callable[[float], List[str]], period: float) -> None:
+def test_reports_that_follow_the_truth_pass_in_any_words(report, period):
     assert CHECKS["reports_status"](_driven(report, period), LIMITS) is PASSED
 
 
 @pytest.mark.parametrize("period", [0.5, 1.0, 2.0])
 @pytest.mark.parametrize("told", [rec.STATUS_NAMES, range(5)])
-def test_reports_that_are_late_by_one_pass(told: Sequence[object], period: float) -> None:
+def test_reports_that_are_late_by_one_pass(told, period):
     late = _driven(lambda time: [f"state: {told[_states(max(1.0, time - period))[-1]]}"], period)
     assert CHECKS["reports_status"](late, LIMITS) is PASSED
 
@@ -180,26 +179,24 @@ def test_reports_that_are_late_by_one_pass(told: Sequence[object], period: float
         (lambda time: _named(_states(time)[-1:]) if time < 37.0 else [], "Nothing is reported while this goal is"),
     ],
 )
-def test_reports_that_do_not_follow_the_truth_fail(
-    report: Callable[[float], List[str]], words: str, period: float
-) -> None:
+def test_reports_that_do_not_follow_the_truth_fail(report, words, period):
     verdict = CHECKS["reports_status"](_driven(report, period), LIMITS)
     assert isinstance(verdict, Failed) and words in verdict.cause
 
 
 @pytest.mark.parametrize("times", [(), (4.0, 22.0, 30.0)])
-def test_too_few_reports_while_the_goal_is_active_fail(times: Tuple[float, ...]) -> None:
+def test_too_few_reports_while_the_goal_is_active_fail(times):
     verdict = CHECKS["reports_status"](_clicked(1.2, -0.4, *((time, "state") for time in times)), LIMITS)
     assert isinstance(verdict, Failed) and "Too little is logged, printed or published" in verdict.cause
 
 
 @pytest.mark.parametrize("x", [-0.4, 1.24, math.nan])
-def test_goal_elsewhere_than_the_click_fails(x: float) -> None:
+def test_goal_elsewhere_than_the_click_fails(x):
     verdict = CHECKS["forwards_goal"](_clicked(x, -0.4), LIMITS)
     assert isinstance(verdict, Failed) and "does not have the click's position" in verdict.cause
 
 
-def _sent(*positions: Tuple[float, float, float]) -> Record:
+def _sent(*positions):
     """Clicks at 1.0 s and at 5.0 s, and goals: when they are sent [s], x and y."""
     goals = tuple(rec.SentGoal(str(number), x, y, time, "") for number, (time, x, y) in enumerate(positions))
     return Record("click", "bridge", clicks=(BEFORE, NEWER), goals=goals)
@@ -215,14 +212,14 @@ def _sent(*positions: Tuple[float, float, float]) -> Record:
         ([(1.0, 1.2, -0.4), (5.0, 1.2, -0.4)], "has the position of the older click"),
     ],
 )
-def test_each_click_becomes_exactly_one_goal(goals: List[Tuple[float, float, float]], words: str) -> None:
+def test_each_click_becomes_exactly_one_goal(goals, words):
     assert CHECKS["forwards_goal"](_sent((1.0, 1.2, -0.4), (5.0, -0.6, 0.9)), LIMITS) is PASSED
     verdict = CHECKS["forwards_goal"](_sent(*goals), LIMITS)
     assert isinstance(verdict, Failed) and words in verdict.cause
 
 
 @pytest.mark.parametrize("time, is_right", [(3.0, False), (5.0, True)])
-def test_goal_is_cancelled_only_for_a_newer_click(time: float, is_right: bool) -> None:
+def test_goal_is_cancelled_only_for_a_newer_click(time, is_right):
     sent = _sent((1.0, 1.2, -0.4), (5.0, -0.6, 0.9))
     record = replace(sent, cancels=(rec.Cancel(time, "0"),), statuses=(rec.Status(time, "0", rec.PREEMPTED),))
     verdict = CHECKS["cancels_older"](record, LIMITS)
@@ -231,7 +228,7 @@ def test_goal_is_cancelled_only_for_a_newer_click(time: float, is_right: bool) -
 
 
 @pytest.mark.parametrize("own_server", [0.0, 1.0])
-def test_bridge_with_an_action_server_of_its_own_does_not_wait_for_the_real_one(own_server: float) -> None:
+def test_bridge_with_an_action_server_of_its_own_does_not_wait_for_the_real_one(own_server):
     verdict = CHECKS["waits_for_server"](Record("no_server", "bridge", marks={"own_server": own_server}), LIMITS)
     assert isinstance(verdict, Failed) == bool(own_server)
     assert not own_server or "has an action server robocop_goto_as of its own" in verdict.cause
@@ -241,7 +238,7 @@ ROBOT, IN_WORLD = Pose2D(0.6, 0.3, 1.0), Pose2D(40.4, -14.3, 1.7)  # from odom a
 MAP = compose(ROBOT, inverse(IN_WORLD))  # odom_from_map
 
 
-def _in_frame(frame: str, goal: Pose2D) -> Record:
+def _in_frame(frame, goal):
     """A click at (1.0, 0.2) in a frame becomes a goal."""
     there = compose({"base_footprint": ROBOT, "map": MAP, "odom": Pose2D()}[frame], Pose2D(1.0, 0.2))
     return Record(
@@ -263,19 +260,19 @@ def _in_frame(frame: str, goal: Pose2D) -> Record:
         ("base_footprint", inverse(ROBOT), "does not have the click's position"),
     ],
 )
-def test_cause_of_a_wrong_transform_is_named(frame: str, odom_from_frame: Pose2D, words: str) -> None:
+def test_cause_of_a_wrong_transform_is_named(frame, odom_from_frame, words):
     goal = compose(odom_from_frame, Pose2D(1.0, 0.2))
     verdict = CHECKS["goal_frame"](_in_frame(frame, goal), LIMITS)
     assert isinstance(verdict, Failed) and words in verdict.cause
 
 
 @pytest.mark.parametrize("frame, odom_from_frame", [("base_footprint", ROBOT), ("map", MAP)])
-def test_goal_in_odom_passes(frame: str, odom_from_frame: Pose2D) -> None:
+def test_goal_in_odom_passes(frame, odom_from_frame):
     goal = compose(odom_from_frame, Pose2D(1.0, 0.2))
     assert CHECKS["goal_frame"](_in_frame(frame, goal), LIMITS) is PASSED
 
 
-def test_misspelt_name_of_an_action_client_is_quoted() -> None:
+def test_misspelt_name_of_an_action_client_is_quoted():
     record = replace(_clicked(0.0, 0.0, servers=("/robovop_goto_as", "/other")), goals=())
     verdict = CHECKS["forwards_goal"](replace(record, marks={"clients": 0.0}), LIMITS)
     assert isinstance(verdict, Failed)
@@ -291,13 +288,13 @@ def test_misspelt_name_of_an_action_client_is_quoted() -> None:
         ("clients", "/robocop_goto_as/goal", "a/TestActionGoal", "x", "The action's type is a/TestAction; the"),
     ],
 )
-def test_wrong_type_of_a_topic_is_named(mark: str, topic: str, found: str, expected: str, words: str) -> None:
+def test_wrong_type_of_a_topic_is_named(mark, topic, found, expected, words):
     record = replace(_clicked(0.0, 0.0), goals=(), marks={mark: 0.0}, other_types=((topic, found, expected),))
     verdict = CHECKS["forwards_goal"](record, LIMITS)
     assert isinstance(verdict, Failed) and words in verdict.cause
 
 
-def _replaced(*cancels: rec.Cancel, preempted: str = "older") -> Record:
+def _replaced(*cancels, preempted="older"):
     """A click and a newer one become goals; the one of the id `preempted` is cancelled."""
     goals = rec.SentGoal("older", 1.2, -0.4, 1.0, ""), rec.SentGoal("newer", -0.6, 0.9, 5.0, "")
     statuses = (rec.Status(5.0, preempted, rec.PREEMPTED),)
@@ -314,16 +311,16 @@ def _replaced(*cancels: rec.Cancel, preempted: str = "older") -> Record:
         (replace(_replaced(), goals=_replaced().goals[1:]), "The click was not forwarded"),
     ],
 )
-def test_cause_of_an_older_goal_that_is_not_replaced_is_named(record: Record, words: str) -> None:
+def test_cause_of_an_older_goal_that_is_not_replaced_is_named(record, words):
     verdict = CHECKS["cancels_older"](record, LIMITS)
     assert isinstance(verdict, Failed) and words in verdict.cause
 
 
-def test_older_goal_that_is_cancelled_passes_wherever_the_goals_are() -> None:
+def test_older_goal_that_is_cancelled_passes_wherever_the_goals_are():
     assert CHECKS["cancels_older"](replace(_replaced(), clicks=(replace(BEFORE, x=9.0), NEWER)), LIMITS) is PASSED
 
 
-def test_bridge_that_takes_pending_for_the_end_is_advised() -> None:
+def test_bridge_that_takes_pending_for_the_end_is_advised():
     click = _reported("state: ACTIVE", "state: SUCCEEDED")
     records = {"click": click, "replace": _replaced(rec.Cancel(5.0, "older"))}
     once = (rec.Line(2.0, "stops at PENDING"),)

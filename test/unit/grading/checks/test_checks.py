@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from typing import Any, List, Tuple
 
 import pytest
 from grading_records import LIMITS, RIGHT, changed, commanded, fed_back
@@ -17,7 +16,7 @@ from robocop_grading.record import Record
     "feedback_rate feedback_position feedback_angle turns_to_goal drives_straight reaches_goal success_result "
     "stands_at_end one_ending no_exception stays_alive".split(),
 )
-def test_correct_run_passes(name: str) -> None:
+def test_correct_run_passes(name):
     assert CHECKS[name](RIGHT, LIMITS) is PASSED
 
 
@@ -33,31 +32,31 @@ NONE = (
 )
 
 
-def logged(*lines: str, **fields: Any) -> Record:
+def logged(*lines, **fields):
     """A right run that has printed these lines."""
     return changed(lines=tuple(rec.Line(3.0, line) for line in lines), **fields)
 
 
-def _aborted(**changes: Any) -> Record:
+def _aborted(**changes):
     """A goal that is aborted 0.3 m before an obstacle, at 10 s."""
     goal, result = replace(RIGHT.goals[0], ends="ABORTED"), rec.Result(10.0, "g", rec.ABORTED, False, "obstacle")
     samples = tuple(replace(it, ahead=max(0.3, 1.3 - it.time / 10.0)) for it in RIGHT.samples)
     return changed(**{"goals": (goal,), "results": (result,), "samples": samples, **changes})
 
 
-def _stuck(**fields: Any) -> Record:
+def _stuck(**fields):
     """A goal that does not end."""
     return changed(**{"results": (), "problem": "no progress for 8 s", **fields})
 
 
-def commanded_before(command: rec.Command) -> Record:
+def commanded_before(command):
     """A right run in which this command came before all others."""
     return changed(commands=(command, *RIGHT.commands))
 
 
 FOR_EVER = tuple(replace(RIGHT.feedback[-1], time=10.5 + tick / 10.0) for tick in range(8))
 THERE = (replace(RIGHT.goals[0], x=-0.03, y=0.03),)
-WRONG: List[Tuple[str, Record, str]] = [
+WRONG = [
     ("feedback_rate", changed(feedback=()), "No feedback was sent at all"),
     ("feedback_rate", changed(feedback=RIGHT.feedback[::5]), "not sent in each iteration"),
     ("feedback_rate", changed(feedback=RIGHT.feedback * 5), "more often than 10 times"),
@@ -161,7 +160,7 @@ WRONG: List[Tuple[str, Record, str]] = [
 
 
 @pytest.mark.parametrize("name, record, words", WRONG, ids=lambda it: it if isinstance(it, str) else "")
-def test_mistake_fails_its_check_with_the_cause(name: str, record: Record, words: str) -> None:
+def test_mistake_fails_its_check_with_the_cause(name, record, words):
     verdict, explain = CHECKS[name](record, LIMITS), CHECKS[name].explain
     assert isinstance(verdict, Failed), verdict
     assert words in (explain({"left": record}, ["left"], verdict) if explain else verdict).cause
@@ -169,8 +168,8 @@ def test_mistake_fails_its_check_with_the_cause(name: str, record: Record, words
 
 @pytest.mark.parametrize("name", CHECKS)
 def test_empty_record_passes_only_the_checks_of_exceptions_and_deaths_and_fails_only_those_of_what_is_missing(
-    name: str,
-) -> None:
+    name,
+):
     kinds = {"action_server": Failed, "waits_for_server": Failed}
     kinds.update(dict.fromkeys(("no_exception", "stays_alive", "bridge_alive"), type(PASSED)))
     verdict = CHECKS[name](Record("start", "server", up=False), LIMITS)
@@ -217,9 +216,7 @@ NORM = (
         (NORM, f"{NORM[-1]} (robocop_goto_as.py, line 51: position_error = np.linalg.norm(dx, dy))"),
     ],
 )
-def test_reason_of_an_end_is_an_exception_with_its_place_in_the_node_or_a_line_that_is_no_information(
-    lines: List[str], reason: str
-) -> None:
+def test_reason_of_an_end_is_an_exception_with_its_place_in_the_node_or_a_line_that_is_no_information(lines, reason):
     status = int(len(lines) > 1)
     verdict = CHECKS["stays_alive"](logged(*lines, node_ends=(rec.NodeEnd(4.0, status),)), LIMITS)
     assert isinstance(verdict, Failed)
@@ -241,14 +238,12 @@ NO_UTF8 = "SyntaxError: Non-UTF-8 code starting with '\\xf8' in file {}robocop_g
         ((NO_UTF8.format("/tmp/a b/"),), NO_UTF8.format(""), ""),
     ],
 )
-def test_exception_is_named_with_its_file_and_line_and_without_its_folder(
-    lines: Tuple[str, ...], seen: str, place: str
-) -> None:
+def test_exception_is_named_with_its_file_and_line_and_without_its_folder(lines, seen, place):
     verdict = CHECKS["no_exception"](logged(*lines), LIMITS)
     assert isinstance(verdict, Failed) and (verdict.seen, verdict.cause) == (seen, f"{seen}{place}")
 
 
-def test_robot_may_stand_still_before_it_drives_and_be_told_so_before_the_first_goal() -> None:
+def test_robot_may_stand_still_before_it_drives_and_be_told_so_before_the_first_goal():
     pause = commanded(lambda c: replace(c, v=0.0 if c.time < 4.0 else c.v))
     assert CHECKS["drives_straight"](pause, LIMITS) is PASSED
     assert CHECKS["stands_at_end"](commanded_before(rec.Command(-0.5, 0.0, 0.0)), LIMITS) is PASSED
@@ -265,19 +260,19 @@ def test_robot_may_stand_still_before_it_drives_and_be_told_so_before_the_first_
         "user should have patience",
     ],
 )
-def test_harmless_line_fails_no_check(line: str) -> None:
+def test_harmless_line_fails_no_check(line):
     record = logged(line)
     assert CHECKS["one_ending"](record, LIMITS) is PASSED
     assert CHECKS["no_exception"](record, LIMITS) is PASSED
 
 
-def test_old_feedback_is_one_mistake_and_a_wrong_one_does_not_say_when_the_goal_is_reached() -> None:
+def test_old_feedback_is_one_mistake_and_a_wrong_one_does_not_say_when_the_goal_is_reached():
     assert CHECKS["feedback_angle"](OLD, LIMITS) is PASSED
     assert CHECKS["reaches_goal"](fed_back(position=lambda d: d - 0.1), LIMITS) is PASSED
 
 
 @pytest.mark.parametrize("turning, words", [(True, "when the robot has turned"), (False, "drives on until then")])
-def test_cancel_that_is_noticed_late_is_not_one_that_is_never_noticed(turning: bool, words: str) -> None:
+def test_cancel_that_is_noticed_late_is_not_one_that_is_never_noticed(turning, words):
     samples = tuple(replace(it, v=0.0 if turning else 0.2, w=0.5 if turning else 0.0) for it in RIGHT.samples)
     cancelled = changed(cancels=(rec.Cancel(5.0, "g"),), samples=samples)
     late = replace(cancelled, results=(rec.Result(8.0, "g", rec.PREEMPTED, False, "x"),))
@@ -291,12 +286,12 @@ def test_cancel_that_is_noticed_late_is_not_one_that_is_never_noticed(turning: b
     assert isinstance(hangs, Failed) and "neither feedback nor a result" in hangs.cause
 
 
-def test_result_of_a_robot_that_rests_at_the_goal_may_come_a_second_later() -> None:
+def test_result_of_a_robot_that_rests_at_the_goal_may_come_a_second_later():
     later = changed(results=(replace(RIGHT.results[0], time=10.8),), statuses=RIGHT.statuses[:1])
     assert CHECKS["reaches_goal"](later, LIMITS) is PASSED
 
 
-def test_robot_that_goes_on_is_told_what_its_own_feedback_said() -> None:
+def test_robot_that_goes_on_is_told_what_its_own_feedback_said():
     drives = tuple(replace(it, v=0.2, x=it.x * 1.05, y=it.y * 1.05) for it in RIGHT.samples)
     later = changed(results=(replace(RIGHT.results[0], time=12.0),), statuses=RIGHT.statuses[:1], samples=drives)
     for offset, words in ((0.0, "threshold of position_error another one"), (0.035, "the last position_error in the")):
@@ -313,14 +308,14 @@ def test_robot_that_goes_on_is_told_what_its_own_feedback_said() -> None:
         pytest.param(9.9, "Exception in thread Thread-6:", "", id="elsewhere"),
     ],
 )
-def test_only_an_exception_that_ends_a_goal_is_charged_to_it(time: float, line: str, words: str) -> None:
+def test_only_an_exception_that_ends_a_goal_is_charged_to_it(time, line, words):
     lines = tuple(rec.Line(time, text) for text in (line, *KEY_ERROR))
     verdict = CHECKS["stops_at_obstacle"](_aborted(lines=lines), LIMITS)
     assert verdict is PASSED if not words else isinstance(verdict, Failed) and words in verdict.cause
 
 
 @pytest.mark.parametrize("line", [KEY_ERROR[0], f"[ERROR] [1.2, 3.4]: {KEY_ERROR[0]}"])
-def test_exception_that_the_node_has_caught_and_printed_fails_no_check_unless_the_node_dies_of_it(line: str) -> None:
+def test_exception_that_the_node_has_caught_and_printed_fails_no_check_unless_the_node_dies_of_it(line):
     caught = logged(line, KEY_ERROR[1])
     assert CHECKS["no_exception"](caught, LIMITS) is PASSED
     assert CHECKS["stops_at_obstacle"](_aborted(lines=caught.lines), LIMITS) is PASSED
@@ -328,7 +323,7 @@ def test_exception_that_the_node_has_caught_and_printed_fails_no_check_unless_th
 
 
 @pytest.mark.parametrize("end, is_at_once", [(0.1, True), (9.0, False)])
-def test_preempted_goal_that_nobody_cancelled_is_called_so(end: float, is_at_once: bool) -> None:
+def test_preempted_goal_that_nobody_cancelled_is_called_so(end, is_at_once):
     verdict = CHECKS["reaches_goal"](changed(results=(rec.Result(end, "g", rec.PREEMPTED, False, "x"),)), LIMITS)
     assert isinstance(verdict, Failed) and "neither a cancel request" in verdict.cause
     assert ("with its parentheses" in verdict.cause) is is_at_once

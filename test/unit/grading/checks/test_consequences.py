@@ -18,9 +18,7 @@ from robocop_grading.checks.verdict import Failed, Kind
         pytest.param(10, 1000, True, False, id="no feedback, and a command now and then"),
     ],
 )
-def test_a_loop_is_slow_if_feedback_and_commands_come_as_seldom(
-    commands: int, feedback: int, ends: bool, is_slow: bool
-) -> None:
+def test_a_loop_is_slow_if_feedback_and_commands_come_as_seldom(commands, feedback, ends, is_slow):
     record = replace(RIGHT, commands=RIGHT.commands[::commands], feedback=RIGHT.feedback[1::feedback])
     record = record if ends else replace(record, results=(), statuses=())
     earlier = Failed("about 10 Hz", "1 Hz", 0.0, "", Kind.TOO_LITTLE)

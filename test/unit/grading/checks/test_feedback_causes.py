@@ -2,14 +2,12 @@
 
 import math
 from dataclasses import replace
-from typing import Any, Callable, Dict, List, Tuple
 
 import pytest
 from grading_records import GOAL, PLAN, RIGHT
 
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
-from robocop_grading.judge import CheckResult, judge
-from robocop_grading.record import Feedback, Sample, SentGoal
+from robocop_grading.judge import judge
 
 MIRRORED = tuple(
     replace(at, y=-at.y, yaw=-at.yaw, world_y=-15.0 - at.world_y, world_yaw=at.world_yaw - 2.0 * at.yaw)
@@ -26,27 +24,25 @@ DRIVES = {  # scenario: how the robot drives, and where its goal is
 class Seen:
     """What a server calculates its errors from."""
 
-    def __init__(self, at: Sample, goal: SentGoal) -> None:
+    def __init__(self, at, goal):
         self.at, self.goal, self.yaw = at, goal, at.yaw
         self.dx, self.dy = goal.x - at.x, goal.y - at.y
         self.direction = math.atan2(self.dy, self.dx)
         self.distance, self.angle = goal.errors_at(at)
 
 
-def wrap(angle: float) -> float:
+def wrap(angle):
     return math.atan2(math.sin(angle), math.cos(angle))
 
 
-def fed_back(
-    samples: Tuple[Sample, ...], goal: SentGoal, name: str, formula: Callable[[Seen], float]
-) -> List[Feedback]:
+def fed_back(samples, goal, name, formula):
     """The feedback of a server with a wrong formula of one error."""
     seen = [Seen(at, goal) for at in samples]
     right = (replace(it, position_error=s.distance, angle_error=s.angle) for it, s in zip(RIGHT.feedback, seen))
     return [replace(it, **{name: formula(s)}) for it, s in zip(right, seen)]
 
 
-POSITION: List[Tuple[Callable[[Seen], float], str]] = [
+POSITION = [
     (lambda s: s.dx**2 + s.dy**2, "position_error is the squared distance: the square root is missing"),
     (lambda s: abs(s.dx), "position_error is |dx|: is dy left out?"),
     (lambda s: abs(s.dy), "position_error is |dy|: is dx left out?"),
@@ -55,7 +51,7 @@ POSITION: List[Tuple[Callable[[Seen], float], str]] = [
     (lambda s: math.hypot(s.goal.y - s.at.x, s.goal.x - s.at.y), "The goal's x and y are swapped"),
     (lambda s: s.angle, "position_error is the angle error: are the two swapped?"),
 ]
-ANGLE: List[Tuple[Callable[[Seen], float], str]] = [
+ANGLE = [
     (lambda s: s.direction, "is the heading left out, read only at the start, calculated wrongly from the quaternion"),
     (lambda s: wrap(s.direction + s.yaw), "as if it were added instead of subtracted"),
     (lambda s: wrap(s.direction - abs(s.yaw)), "The heading has no sign, as 2 * acos(w) has none"),
@@ -70,7 +66,7 @@ ANGLE: List[Tuple[Callable[[Seen], float], str]] = [
 ]
 
 
-def judged(feedback: Callable[[Tuple[Sample, ...], SentGoal], List[Feedback]], **fields: Any) -> Dict[str, CheckResult]:
+def judged(feedback, **fields):
     """The results by check of a server that gives this feedback on its drives; `fields` are those of the first one."""
     records = {}
     for name, (samples, x, y) in DRIVES.items():
@@ -85,9 +81,7 @@ FORMULAS = [("position", *row) for row in POSITION] + [("angle", *row) for row i
 
 
 @pytest.mark.parametrize("error, formula, words", FORMULAS, ids=[words for _, _, words in FORMULAS])
-def test_cause_of_wrong_errors_is_the_formula_that_leads_to_them(
-    error: str, formula: Callable[[Seen], float], words: str
-) -> None:
+def test_cause_of_wrong_errors_is_the_formula_that_leads_to_them(error, formula, words):
     checks = judged(lambda samples, goal: fed_back(samples, goal, f"{error}_error", formula))
     wrong, right = checks[f"feedback_{error}"], checks[f"feedback_{'angle' if error == 'position' else 'position'}"]
     assert wrong.failure is not None and words in wrong.failure.cause
@@ -105,8 +99,8 @@ def test_cause_of_wrong_errors_is_the_formula_that_leads_to_them(
         pytest.param(lambda number: max(0, number - 20), 2.0, id="2 s"),
     ],
 )
-def test_errors_of_an_old_pose_are_one_mistake_that_is_named(shown: Callable[[int], int], age: float) -> None:
-    def feedback(samples: Tuple[Sample, ...], goal: SentGoal) -> List[Feedback]:
+def test_errors_of_an_old_pose_are_one_mistake_that_is_named(shown, age):
+    def feedback(samples, goal):
         right = fed_back(samples, goal, "position_error", lambda seen: seen.distance)
         return [replace(right[shown(number)], time=it.time) for number, it in enumerate(right)]
 
@@ -116,10 +110,10 @@ def test_errors_of_an_old_pose_are_one_mistake_that_is_named(shown: Callable[[in
     assert angle.failure is None or angle.follows == "feedback_position"
 
 
-def test_pose_counted_from_the_start_of_the_node_is_named() -> None:
+def test_pose_counted_from_the_start_of_the_node_is_named():
     started = Pose2D(0.4, 0.1, 0.6)
 
-    def feedback(samples: Tuple[Sample, ...], goal: SentGoal) -> List[Feedback]:
+    def feedback(samples, goal):
         first = started if samples is RIGHT.samples and goal.x == 1.0 else Pose2D()
         poses = [compose(inverse(first), Pose2D(at.x, at.y, at.yaw)) for at in samples]
         errors = [goal.errors_at(pose) for pose in poses]

@@ -5,7 +5,7 @@ import pytest
 from robocop_grading.classroom.summary import Summary, pace
 
 
-def test_figures_are_those_of_the_hand_ins_that_were_judged() -> None:
+def test_figures_are_those_of_the_hand_ins_that_were_judged():
     assert Summary((3.0, 1.5, 2.0, 1.0), 4, 3.0).lines() == [
         "4 judged, 4 not gradable",
         "mean 1.88, median 1.75 of 3 points",
@@ -18,7 +18,7 @@ def test_figures_are_those_of_the_hand_ins_that_were_judged() -> None:
 
 
 @pytest.mark.parametrize("available", [0.0, 0.5, 1.0, 2.0, 7.5, 8.0, 10.0, 95.0, 1000.0])
-def test_histogram_has_a_few_bars_and_everybody_in_one_of_them(available: float) -> None:
+def test_histogram_has_a_few_bars_and_everybody_in_one_of_them(available):
     points = [available * number / 200.0 for number in range(201)]
     histogram = Summary(points, 0, available).histogram
     assert sum(count for _, count in histogram) == 201
@@ -36,5 +36,5 @@ def test_histogram_has_a_few_bars_and_everybody_in_one_of_them(available: float)
         (200, 0, 600.0, ""),
     ],
 )
-def test_time_left_follows_from_the_rate_so_far(done: int, remaining: int, seconds: float, words: str) -> None:
+def test_time_left_follows_from_the_rate_so_far(done, remaining, seconds, words):
     assert pace(done, remaining, seconds) == words
