@@ -31,7 +31,7 @@ OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself
 # oom_score_adj.
 SEALED = ("--remount-ro", "/", "--remount-ro", "/dev", "--remount-ro", "/proc")
 # What find prints: a file that nobody needs to read is left out.
-UNREADABLE = "-name __pycache__ -prune -o ! -type l ! -readable -print -quit".split()
+UNREADABLE = "( -name __pycache__ -o -name .* ) -prune -o ! -type l ! -readable -print -quit".split()
 TRIAL_TIME = 600.0  # [s, wall] also on a busy machine
 # Files that docker and podman make in every container.
 CONTAINER_MARKS = ("/.dockerenv", "/run/.containerenv")
