@@ -1,128 +1,150 @@
 """Sends a goal from the command line and follows the goal to its end, with its progress on the screen."""
 
 import argparse
-import math
 import sys
-import threading
 import time
-from typing import Any, Callable
+from typing import Optional
 
 import actionlib
+import rosgraph
 import rospy
 from geometry_msgs.msg import Point, PoseStamped
 from nav_msgs.msg import Odometry
 
-from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal, SimStatus
+from aro_robocop_goto_as.msg import GoToPositionAction, GoToPositionFeedback, GoToPositionGoal
 
 from ...errors import FrameError
-from ...names import ACTION, SIMULATOR, absolute, absolute_if_named, position_text, prefixed, robocop
-from ...probes import master
+from ...names import ACTION, absolute_if_named, position_text, prefixed
 from ...process import signals
+from .. import graph
 from ..client import discovery
 from ..client.goal_frame import GoalTransformer
-from ..client.goal_states import ending
+from ..client.goal_states import STATES, ending
 from ..waiting import wait_until
 from .goto_arguments import DEFAULT_FRAME, NOT_REACHED, REACHED, SERVER_TIMEOUT, complain, tell
 
 ROBOT_FRAMES = ("odom", "base_footprint", "base_link", "base_scan")  # each of several robots has its own
-PAUSE_TIMEOUT = 1.0  # [s, wall] without a change of simulated time
-STATUS = absolute(SIMULATOR, "status")
-SLIPPED = (
-    "the wheels slipped at an obstacle, so odometry is wrong and the robot is not where it says; this puts robots and "
-    f"odometry back: {robocop()} shell rosservice call {absolute(SIMULATOR, 'reset')} 0"
-)
-PAUSED = (
-    "simulated time does not advance; is the simulator paused? "
-    f"({robocop()} shell rosservice call {absolute(SIMULATOR, 'unpause')})"
-)
+SILENCE = 5.0  # [s, wall] from sending a goal until it is said what a half-done server lacks
+POLL = 0.1  # [s, wall]
+MOVED = 0.001  # [m] or in the quaternion's z
 
 
-def standstill() -> str:
-    """Why simulated time may not advance, and what to do."""
-    return master.no_simulator(master.master_uri()) or PAUSED
+class Follower:
+    """One robot's action client and odometry, and what has been seen of its goal."""
 
+    def __init__(self, robot: str) -> None:
+        self.action = absolute_if_named(robot, ACTION)
+        self.cmd_vel = absolute_if_named(robot, "cmd_vel")
+        self.odom: Optional[Odometry] = None
+        self.phase = ""  # of the newest feedback, "" before the first
+        rospy.Subscriber(absolute_if_named(robot, "odom"), Odometry, self._store, queue_size=1)
+        self.client = actionlib.SimpleActionClient(self.action, GoToPositionAction)
 
-class _Newest:
-    """The newest message of a topic; None before the first one."""
+    def _store(self, message: Odometry) -> None:
+        self.odom = message
 
-    def __init__(self, topic: str, kind: Any) -> None:
-        self.message: Any = None
-        rospy.Subscriber(topic, kind, self._store, queue_size=1)
-
-    def _store(self, message: Any) -> None:
-        self.message = message
-
-
-class _ProgressLine:
-    """On a terminal, one line that is overwritten; elsewhere, one line for each new phase."""
-
-    def __init__(self) -> None:
-        self.on_terminal = sys.stdout.isatty()
-        self.phase = ""
+    def wait_for_server(self) -> bool:
+        """Whether the server is up within SERVER_TIMEOUT; says what it waits for, and what may be wrong."""
+        if not discovery.is_up(self.client):
+            tell(f"waiting for {self.action}")
+            wait_until(lambda: discovery.is_up(self.client), SERVER_TIMEOUT)
+        signals.reraise_if_interrupted()  # rospy may have swallowed it
+        if discovery.is_up(self.client):
+            return True
+        hint = discovery.hint(self.action, " --robot NAME chooses it") or f"; {discovery.advice()}"
+        complain(f"no answer from {self.action} for {SERVER_TIMEOUT:g} s{hint}")
+        return False
 
     def show(self, feedback: GoToPositionFeedback) -> None:
+        """Print feedback: on a terminal in one line that is overwritten, elsewhere once for each phase."""
         errors = f"distance {feedback.position_error:6.2f} m   angle {feedback.angle_error:+6.2f} rad"
-        line = f"{errors}   {feedback.message}"
-        if self.on_terminal:
-            print("\r\033[K" + line, end="", flush=True)
-            return
-        phase = feedback.message.split(",")[0]
-        if phase != self.phase:
-            tell(line)
+        phase = feedback.message.split(",")[0] or "feedback"
+        if sys.stdout.isatty():
+            print(f"\r\033[K{errors}   {feedback.message}", end="", flush=True)
+        elif phase != self.phase:
+            tell(f"{errors}   {feedback.message}")
         self.phase = phase
 
-    def close(self) -> None:
-        if self.on_terminal:
+    def missing(self, start: Optional[Odometry]) -> str:
+        """What a server at work would have done since the odometry `start`, in words; empty if it did all of it."""
+        try:
+            published = any(topic.name == rospy.resolve_name(self.cmd_vel) for topic in graph.published_topics())
+        except (OSError, rosgraph.MasterException):
+            return "the ROS master does not answer"
+        lacks = {
+            "no feedback": not self.phase,
+            f"nobody publishes {self.cmd_vel}": not published,
+            "the robot has not moved": not _moved(start, self.odom),
+        }
+        return "; ".join(text for text, is_so in lacks.items() if is_so)
+
+    def follow(self, position: Point) -> int:
+        """Send a position in odom, show feedback, cancel on Ctrl-C; returns the exit status."""
+        start, due = self.odom, time.monotonic() + SILENCE
+        with signals.Deferred():  # a goal that was sent must be known, or it can't be cancelled
+            self.client.send_goal(GoToPositionGoal(position), feedback_cb=self.show)
+        try:
+            while not self._has_ended():
+                signals.reraise_if_interrupted()
+                if not discovery.is_up(self.client):
+                    complain("the server is gone")
+                    return NOT_REACHED
+                if time.monotonic() > due:
+                    due = float("inf")
+                    lacks = self.missing(start)
+                    if lacks:
+                        complain(f"after {SILENCE:g} s: {lacks}")
+                time.sleep(POLL)
+        except KeyboardInterrupt:
+            self.client.cancel_goal()
+            wait_until(self._has_ended, SERVER_TIMEOUT)
+        return self._report()
+
+    def _has_ended(self) -> bool:
+        """Not by SimpleActionClient's own state, which misses an end that comes before send_goal() has returned."""
+        return bool(self.client.gh.get_comm_state() == actionlib.CommState.DONE)
+
+    def _report(self) -> int:
+        """Print how the goal ended, with actionlib's own text where the result has none; returns the exit status."""
+        if not self._has_ended():
+            tell("no answer from the server")
+            return NOT_REACHED
+        state, result = self.client.gh.get_goal_status(), self.client.get_result()
+        line, text = ending(state, result), self.client.get_goal_status_text()
+        if sys.stdout.isatty():
             print("\r\033[K", end="")
+        tell(f"{line}: {text}" if text and line == STATES[state] else line)
+        return REACHED if result is not None and result.success else NOT_REACHED
 
 
-class _PauseNotice:
-    """Prints a notice once when simulated time stops advancing."""
-
-    def __init__(self) -> None:
-        self.time = rospy.get_rostime()
-        self.since = time.monotonic()  # [s, wall]; infinite once the notice is printed
-
-    def poll(self) -> None:
-        now = rospy.get_rostime()
-        if now != self.time:
-            self.time, self.since = now, time.monotonic()
-        elif time.monotonic() - self.since > PAUSE_TIMEOUT:
-            self.since = math.inf
-            complain(standstill())
+def _moved(start: Optional[Odometry], now: Optional[Odometry]) -> bool:
+    if start is None or now is None:
+        return now is not None
+    before, after = start.pose.pose, now.pose.pose
+    changes = (
+        after.position.x - before.position.x,
+        after.position.y - before.position.y,
+        after.orientation.z - before.orientation.z,
+    )
+    return any(abs(change) > MOVED for change in changes)
 
 
-def _frame(robot: str, frame: str) -> str:
-    """The robot's own frame of that name; shared frames such as map are unchanged."""
-    return prefixed(robot, frame) if frame in ROBOT_FRAMES else frame
-
-
-def go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool] = lambda: False) -> int:
-    """Transform the goal, send it to the server and wait for its end; returns the exit status.
-
-    `ended`: whether the system has ended, so that its server will not come.
-    """
+def go_to(args: argparse.Namespace) -> int:
+    """Transform the goal, send it to the server and wait for its end; returns the exit status."""
     try:
-        return _go_to(args, timeout, ended)
+        rospy.init_node("robocop_goto", anonymous=True, disable_signals=True)
+        return _go_to(args)
     finally:
         rospy.signal_shutdown("done")
 
 
-def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) -> int:
-    rospy.init_node("robocop_goto", anonymous=True, disable_signals=True)
-    started = rospy.get_rostime()
-    odometry, simulator = _Newest(absolute_if_named(args.robot, "odom"), Odometry), _Newest(STATUS, SimStatus)
-    odom = _frame(args.robot, "odom")
-    transformer = GoalTransformer(odom, odom, SERVER_TIMEOUT, lambda: odometry.message)
-    action = absolute_if_named(args.robot, ACTION)
-    client = actionlib.ActionClient(action, GoToPositionAction)
-    missing = _wait_or_explain(client, action, timeout, ended)
-    signals.reraise_if_interrupted()  # rospy may have swallowed it
-    if missing:
-        complain(missing)
+def _go_to(args: argparse.Namespace) -> int:
+    odom, follower = prefixed(args.robot, "odom"), Follower(args.robot)
+    transformer = GoalTransformer(odom, odom, SERVER_TIMEOUT, lambda: follower.odom)
+    if not follower.wait_for_server():
         return NOT_REACHED
     pose = PoseStamped()
-    pose.header.frame_id = _frame(args.robot, args.frame)
+    pose.header.frame_id = prefixed(args.robot, args.frame) if args.frame in ROBOT_FRAMES else args.frame
     pose.pose.position = Point(args.x, args.y, 0.0)
     try:
         position = transformer.resolve(pose)
@@ -131,65 +153,7 @@ def _go_to(args: argparse.Namespace, timeout: float, ended: Callable[[], bool]) 
         complain(str(error))
         if args.frame == DEFAULT_FRAME:
             complain("--frame odom gives X and Y relative to where the robot's odometry started")
-        if rospy.get_rostime() == started:
-            complain(standstill())
         return NOT_REACHED
-    given = f"x {args.x:g} y {args.y:g} in {pose.header.frame_id}"
     in_odom = f", {position_text(position.x, position.y, odom)}" if pose.header.frame_id != odom else ""
-    tell(f"goal {given}{in_odom}")
-    status = follow(client, position)
-    if simulator.message is not None and args.robot.strip("/") in simulator.message.slipped:
-        complain(SLIPPED)
-    return status
-
-
-def _wait_or_explain(client: actionlib.ActionClient, action: str, timeout: float, ended: Callable[[], bool]) -> str:
-    """Wait up to `timeout` [s, wall] for the server, or until its system has ended.
-
-    An empty string, or why it may be missing and what to do.
-    """
-    started = time.monotonic()
-    wait_until(lambda: discovery.is_up(client) or ended(), timeout)
-    if discovery.is_up(client) and not ended():
-        return ""
-    if not rospy.get_rostime():
-        return standstill()
-    silence = f"no answer from {action} for {time.monotonic() - started:.0f} s"
-    return f"{silence}{discovery.hint(action, ' --robot NAME chooses it') or '; ' + discovery.advice()}"
-
-
-def follow(client: actionlib.ActionClient, position: Point) -> int:
-    """Send a position in odom, show feedback, cancel on Ctrl-C; returns the exit status.
-
-    SimpleActionClient knows its goal only once it has been sent: it logs an error about each change of state that comes
-    before, and never tells of an end that does.
-    """
-    progress, pause, done = _ProgressLine(), _PauseNotice(), threading.Event()
-    answer, is_reached, goal = "no answer from the server", False, None
-
-    def on_transition(handle: actionlib.ClientGoalHandle) -> None:
-        nonlocal answer, is_reached
-        if handle.get_comm_state() == actionlib.CommState.DONE:
-            result = handle.get_result()
-            answer = ending(handle.get_goal_status(), result)
-            is_reached = result is not None and result.success
-            done.set()
-
-    try:
-        with signals.Deferred():  # a goal that was sent must be known, or it can't be cancelled
-            goal = client.send_goal(GoToPositionGoal(position), on_transition, lambda _, newest: progress.show(newest))
-        while not done.wait(0.1):
-            signals.reraise_if_interrupted()
-            pause.poll()
-            if not discovery.is_up(client):
-                progress.close()
-                complain("the server is gone")
-                return NOT_REACHED
-    except KeyboardInterrupt:
-        if goal is None:
-            raise
-        goal.cancel()
-        done.wait(SERVER_TIMEOUT)
-    progress.close()
-    tell(answer)
-    return REACHED if is_reached else NOT_REACHED
+    tell(f"goal x {args.x:g} y {args.y:g} in {pose.header.frame_id}{in_odom}")
+    return follower.follow(position)

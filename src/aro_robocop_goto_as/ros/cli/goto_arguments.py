@@ -9,11 +9,9 @@ from typing import List
 from ...param_loading import MAX_COORDINATE
 from ...process.start import typed
 
-SERVER_TIMEOUT = 5.0  # [s, wall] for the server of a running system
-START_TIMEOUT = 60.0  # [s, wall] for the server of a system started for this goal, also on a slow machine
-REACHED, NOT_REACHED, WRONG_ARGUMENTS = 0, 1, 2  # exit statuses; argparse's own is also 2
+SERVER_TIMEOUT = 5.0  # [s, wall] for the server, and for the transform of the goal
+REACHED, NOT_REACHED = 0, 1  # exit statuses; 2 for wrong arguments is argparse's own
 NEGATIVE = re.compile(r"-[\d.]+([eE][-+]?\d+)?")
-MISTAKEN = ("frame", "robot")  # options that are taken for launch arguments, as in frame:=odom
 DEFAULT_FRAME = "map"  # in which RViz gives its 2D Nav Goals
 
 
@@ -22,9 +20,9 @@ def parse(argv: List[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog=typed("goto"),
         description="Send one goal and follow it to its end.",
-        usage="%(prog)s X Y [--frame F] [--robot NAME] [NAME:=VALUE ...]",
-        epilog="Uses the running ROS system. Without a ROS master it starts a headless simulator for this goal, with "
-        "these arguments of `robocop run`. Exit status 0 if the goal is reached, 1 if not, 2 for wrong arguments.",
+        usage="%(prog)s X Y [--frame F] [--robot NAME]",
+        epilog="Needs a running system, such as that of `robocop run`. Exit status 0 if the goal is reached, 1 if not, "
+        "2 for wrong arguments.",
     )
     parser.add_argument("x", type=_metres, help="[m]")
     parser.add_argument("y", type=_metres, help="[m]")
@@ -34,19 +32,10 @@ def parse(argv: List[str]) -> argparse.Namespace:
         help="of X and Y: map (default; as a click in RViz), odom, base_footprint (relative to the robot), ...",
     )
     parser.add_argument("--robot", default="", help="name of one of several robots; frames are given without it")
-    parser.add_argument("--world", help="the same as world:=WORLD")
-    parser.add_argument(
-        "launch", nargs="*", default=[], metavar="NAME:=VALUE", help="such as world:=stage_1; see robocop help run"
-    )
     # argparse takes -5e-1 for an option, but not with a space before it.
-    args = parser.parse_intermixed_args([f" {word}" if NEGATIVE.fullmatch(word) else word for word in argv])
+    args = parser.parse_args([f" {word}" if NEGATIVE.fullmatch(word) else word for word in argv])
     if not args.frame:
         parser.error("--frame: expected the name of a frame, got nothing")
-    args.launch += [f"world:={args.world}"] if args.world else []
-    for word in args.launch:
-        option = word.partition(":=")[0]
-        if option in MISTAKEN:
-            parser.error(f"got {word}; did you mean --{option} {word.partition(':=')[2]}?")
     return args
 
 
