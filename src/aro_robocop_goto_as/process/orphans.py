@@ -1,32 +1,14 @@
-"""Leaves no process behind: ends a child when its parent ends, and every descendant of this process."""
+"""Leaves no process behind: ends every descendant of this process."""
 
 import contextlib
 import ctypes
 import os
 import signal
 import time
-from typing import Callable
 
-PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36  # options of Linux' prctl(2)
-LIBC = ctypes.CDLL(None, use_errno=True)  # loaded here: between fork and exec little is allowed
+PR_SET_CHILD_SUBREAPER = 36  # an option of Linux' prctl(2)
+LIBC = ctypes.CDLL(None, use_errno=True)
 POLL = 0.02  # [s, wall]
-
-
-def end_with_parent() -> Callable[[], None]:
-    """A preexec_fn for subprocess.Popen: Linux sends the child SIGTERM when this process ends, however that ends.
-
-    Linux ties the signal to the thread that starts the child, so that thread must live as long as this process. What
-    the child starts itself is not affected.
-    """
-    parent = os.getpid()
-
-    def between_fork_and_exec() -> None:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)  # until the exec this process's handler would get the signal
-        LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
-        if os.getppid() != parent:  # it has ended already
-            os.kill(os.getpid(), signal.SIGTERM)
-
-    return between_fork_and_exec
 
 
 def adopt_orphans() -> None:
