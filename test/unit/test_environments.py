@@ -3,7 +3,9 @@
 import itertools
 
 import pytest
-from command import make_program, robocop
+from command import ROOT, environment, make_program, robocop
+from systems import Process
+from waiting import wait_for
 
 from aro_robocop_goto_as.process.ports import free_port
 
@@ -40,22 +42,29 @@ TERMINALS += [pytest.param(pair, marks=pytest.mark.slow) for pair in PAIRS]
 
 
 @pytest.fixture
-def calls(tmp_path, monkeypatch):
-    """A function that makes a call in several environments at once."""
+def terminal(tmp_path, monkeypatch):
+    """A function that puts this test into several environments at once; it returns the settings of the commands."""
     make_program(tmp_path / "python3", "#!/bin/sh\nexit 77\n")
     here = {"pyenv": str(tmp_path), "port": free_port()}
     for name in ("ROS_HOME", "ROS_LOG_DIR", "ROS_NAMESPACE"):
         monkeypatch.delenv(name, raising=False)
 
-    def call(names, *words, **settings):
+    def enter(names):
+        settings = {}
         for name, value in itertools.chain.from_iterable(ENVIRONMENTS[chosen][0].items() for chosen in names):
             if value is None:
                 monkeypatch.delenv(name, raising=False)
             else:
                 settings[name] = value.format(**here)
-        return robocop(*words, **settings)
+        return settings
 
-    return call
+    return enter
+
+
+@pytest.fixture
+def calls(terminal):
+    """A function that makes a call in several environments at once."""
+    return lambda names, *words, **settings: robocop(*words, **settings, **terminal(names))
 
 
 def explained(text, names):
@@ -91,7 +100,9 @@ def test_doctor_names_what_is_wrong(calls, names):
 
 
 @pytest.mark.slow
-def test_a_goal_is_reached_in_all_harmless_environments_at_once(calls):
-    uri = f"http://localhost:{free_port()}"
-    done = calls(HARMLESS, "goto", "0.15", "0", "world:=empty", ROS_MASTER_URI=uri)
-    assert done.returncode == 0 and "SUCCEEDED: REACHED: " in done.stdout, done.stdout + done.stderr
+def test_a_goal_is_reached_in_all_harmless_environments_at_once(terminal):
+    settings = {**terminal(HARMLESS), "ROS_MASTER_URI": f"http://localhost:{free_port()}"}
+    with Process(ROOT / "robocop", "run", "rviz:=false", "world:=empty", env=environment(**settings)) as system:
+        wait_for(lambda: "stop " in system.output or system.poll() is not None, "the overview")
+        done = robocop("goto", "0.15", "0", **settings)
+    assert done.returncode == 0 and "SUCCEEDED: REACHED: " in done.stdout, done.stdout + done.stderr + system.output
