@@ -120,7 +120,7 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=typed("grade"), description=__doc__, allow_abbrev=False)
     parser.add_argument("path", help="a package, a server or bridge (a .py file), or a zip or tar archive of them")
     parser.add_argument("--report", metavar="DIR", help="folder of the report (default: .robocop/reports/PATH)")
-    parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: config/grading.yaml)")
+    parser.add_argument("--plan", metavar="YAML", help="limits, points and packages (default: config/grading.yaml)")
     parser.add_argument("--seed", type=int, default=MIDDLE, metavar="N", help=SEED_HELP)
     parser.add_argument("--unsafe", action="store_true", help="run the submission without bubblewrap's sandbox")
     parser.add_argument("--all-plots", action="store_true", help=ALL_PLOTS)

@@ -127,7 +127,7 @@ def arguments() -> argparse.Namespace:
         "folder", metavar="DIR", help="contains a folder, zip or tar archive, or Python file per hand-in"
     )
     parser.add_argument("--report", metavar="DIR", help="folder of the results (default: DIR_results)")
-    parser.add_argument("--plan", metavar="YAML", help="scenarios, limits and points (default: of the results so far)")
+    parser.add_argument("--plan", metavar="YAML", help="limits, points and packages (default: of the results so far)")
     parser.add_argument("--seed", type=int, metavar="N", help=CLASS_SEED)
     parser.add_argument("--workers", type=int, metavar="N", help="hand-ins at once (default: one a core)")
     parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")

@@ -30,7 +30,7 @@ OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself
 # Without these an unprivileged user's sandbox could write to the tmpfs below / and /dev without limit, and to its
 # oom_score_adj.
 SEALED = ("--remount-ro", "/", "--remount-ro", "/dev", "--remount-ro", "/proc")
-# What find prints: a file that nobody needs to read is left out.
+# What find prints. Left out are hidden files, which are no part of a hand-in, and compiled ones, which are not needed.
 UNREADABLE = "( -name __pycache__ -o -name .* ) -prune -o ! -type l ! -readable -print -quit".split()
 TRIAL_TIME = 600.0  # [s, wall] also on a busy machine
 # Files that docker and podman make in every container.
