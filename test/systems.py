@@ -12,7 +12,7 @@ import rosgraph
 import yaml
 from waiting import DEADLINE, wait_for
 
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 END_TIMEOUT = 40.0  # [s, wall] for a process to end; roslaunch needs 17 s to kill a node that does not end
 CALLER = "/system_test"

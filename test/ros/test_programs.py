@@ -11,7 +11,7 @@ from systems import Program
 from waiting import DEADLINE, wait_for
 
 from aro_robocop_goto_as.probes.master import running_node
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
 NODES = ("robocop_goto_as.py", "robocop_rviz.py", "robocop_rviz_goto_ac.py", "robocop_sim.py", "robocop_web.py")

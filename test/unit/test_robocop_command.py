@@ -12,7 +12,7 @@ import pytest
 from command import ROOT, SETUP_TIMEOUT, environment, make_program, robocop
 from fake_index import builds, source_release
 
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 pytestmark = pytest.mark.timeout(300)  # it builds workspaces
 

@@ -13,10 +13,10 @@ from xml.etree import ElementTree
 
 from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.own_path import expect_own
-from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
 from aro_robocop_goto_as.suggestions import did_you_mean
+from robocop_hosting import orphans
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 

@@ -13,7 +13,7 @@ from rosgraph_msgs.msg import Clock
 from aro_robocop_goto_as.cli import program
 from aro_robocop_goto_as.cli.commands import COMMANDS
 from aro_robocop_goto_as.cli.system_commands import web_arguments
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 LOCAL = "http://localhost:11399"
 LAUNCH = "/launch/robocop_launch.py --quiet aro_robocop_goto_as"
