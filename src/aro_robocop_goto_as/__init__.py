@@ -37,6 +37,8 @@ From a world file to a scan:
         raycast.beams             lays this out for caster.c, which caster_library loads: exact distances along beams
     sensors.lidar                 noise, range limits -> ranges
 
+Where there is room in that world, and its map: `floor_plan`.
+
 From the system to a browser and back, by viser:
 
     ros.web.node                  the loop: messages -> the parts of the page, updated one after the other

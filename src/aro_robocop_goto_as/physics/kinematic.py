@@ -17,7 +17,6 @@ from ..geometry import Pose2D, Pose3D, quaternion_from_rpy
 from ..raycast.caster_library import GridStruct
 from ..raycast.cross_section import CrossSection
 from ..raycast.grid_index import Tiles
-from ..raycast.obstacle_distance import body_heights
 from ..robot.fleet import Fleet, FleetStruct, library
 from ..robot.model import BodyState
 from ..world.model import World
@@ -77,7 +76,7 @@ class KinematicEngine:
         """`rate` [Hz] of the steps."""
         n = len(fleet)
         self.fleet = fleet
-        heights = [body_heights(model) for model in fleet.models]
+        heights = [model.body_heights() for model in fleet.models]
         self._heights = sorted(set(heights))
         self._section_of = np.array([self._heights.index(of_one) for of_one in heights], dtype=np.int64)
         self._free_travel, self._blocked, self._crowded = np.zeros(n), np.zeros(n, np.uint8), np.zeros(n, np.uint8)

@@ -7,10 +7,10 @@ from typing import Optional, Sequence, Set
 import numpy as np
 
 from ..errors import PlaceError
+from ..floor_plan.obstacle_distance import ObstacleDistance
+from ..floor_plan.occupancy import occupancy_of
 from ..geometry import Pose2D, Twist2D, compose, inverse
 from ..physics.engine import Engine
-from ..raycast.obstacle_distance import ObstacleDistance, body_heights
-from ..raycast.occupancy import occupancy_of
 from ..robot.base_controller import clamped
 from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
@@ -195,7 +195,7 @@ class Simulator:
         """PlaceError, naming what is in the way, if a robot's footprint at a pose overlaps something."""
         x, y, fleet = pose.x, pose.y, self.fleet
         radii = fleet.radii.tolist()
-        nearest = ObstacleDistance(self.world, body_heights(self.robots[robot].model), self.world_time).nearest(x, y)
+        nearest = ObstacleDistance(self.world, self.robots[robot].model.body_heights(), self.world_time).nearest(x, y)
         if nearest.distance < radii[robot]:
             raise PlaceError(
                 f"x {x:.3f} y {y:.3f} is {nearest.distance:.3f} m from '{nearest.name}', expected at least the robot's "

@@ -6,21 +6,11 @@ from typing import NamedTuple, Tuple
 
 import numpy as np
 
-from ..robot.model import RobotModel
+from ..raycast.cross_section import NO_CIRCLES, NO_SEGMENTS, outline
 from ..shapes import Mesh, Plane
 from ..world.model import World
-from .cross_section import NO_CIRCLES, NO_SEGMENTS, outline
 
-MIN_HEIGHT = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section
-MAX_SPACING = 0.09  # [m] between cross-sections, from there up to the lidar
 REACH = 0.5  # [m] only segments within this distance along y are searched at first, and all only if none is nearer
-
-
-def body_heights(model: RobotModel) -> Tuple[float, ...]:
-    """The heights [m] of the cross-sections that a robot's body is compared with; three for a Burger."""
-    top = model.height_of(model.base_from_scan)
-    count = 1 + max(1, math.ceil((top - MIN_HEIGHT) / MAX_SPACING))
-    return tuple(np.linspace(MIN_HEIGHT, top, count).tolist())
 
 
 class Nearest(NamedTuple):
