@@ -1,7 +1,4 @@
-/* Ideal differential drives as discs that walls and other discs block; kinematic.py describes the model.
- *
- * The structures are mirrored in kinematic.py; ARO_FLEET_VERSION changes with them.
- */
+/* Ideal differential drives as discs that walls and other discs block; kinematic.py describes the model. */
 
 #include <math.h>
 #include <stddef.h>

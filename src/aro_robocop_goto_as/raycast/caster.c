@@ -3,8 +3,6 @@
  * A shape is compared only with the beams between the bearings of its two edges. In a grid, only the segments in tiles
  * that beams pass through are compared. Each distance depends on one beam and one shape only, and a beam's result is
  * their minimum, so results depend neither on the order of the shapes nor on which other sensors are cast.
- *
- * The structures are mirrored in caster_library.py; ARO_CASTER_VERSION changes with them.
  */
 
 #include <math.h>
@@ -13,7 +11,7 @@
 
 #include "grid.h"
 
-#define ARO_CASTER_VERSION 7
+#define ARO_CASTER_VERSION 7   /* changes with each structure and function of the library that Python uses */
 #define TURN 6.283185307179586 /* [rad] */
 #define TOLERANCE 1e-9         /* [rad] a beam this close to a shape's edge hits it: none slips between two walls */
 #define ROUGH 2e-5             /* [rad] the bearings between which beams are compared with a circle are wider by this */

@@ -1,4 +1,4 @@
-/* Segments in square tiles, row by row; mirrored by GridStruct in caster_library.py. */
+/* Segments in square tiles, row by row. */
 #ifndef ARO_GRID_H
 #define ARO_GRID_H
 

@@ -1,7 +1,4 @@
-/* The errors of lidars: exact distances -> ranges.
- *
- * The structures are mirrored in lidar.py and sensor.py; ARO_CASTER_VERSION changes with it.
- */
+/* The errors of lidars: exact distances -> ranges. */
 
 #include <math.h>
 #include <stdint.h>

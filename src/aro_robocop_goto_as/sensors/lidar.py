@@ -7,7 +7,7 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from ..compiled import address, members
+from ..compiled import address, structure
 from ..raycast.beams import Beams
 from ..raycast.caster_library import load
 from .lidar_profiles import LidarParams, LidarProfile
@@ -15,16 +15,7 @@ from .sensor import Episode, MeasurementCalls, RobotIndices, Sensor, SensorConte
 
 SCAN = "scan"
 
-
-class _LidarStruct(ctypes.Structure):
-    """`struct lidar` of lidar.c."""
-
-    _fields_ = [
-        *members(ctypes.c_double, "range_min range_max noise step too_near no_return"),
-        ("normals", ctypes.c_void_p),
-        *members(ctypes.c_int64, "samples n_accuracy"),
-        ("accuracy", ctypes.c_void_p),
-    ]
+_Lidar = structure("sensors/lidar.c", "lidar")
 
 
 class RangeErrors:
@@ -37,7 +28,7 @@ class RangeErrors:
         self._samples = profile.samples
         self._accuracy = np.array(profile.accuracy, dtype=float).reshape(-1, 3)
         self._normals = np.zeros(profile.samples)
-        struct = _LidarStruct(
+        struct = _Lidar(
             profile.range_min,
             profile.range_max,
             profile.noise,

@@ -1,7 +1,4 @@
-/* Wheel odometry of all robots: dead reckoning from what the wheel encoders count.
- *
- * The structure is mirrored in odometry.py; ARO_FLEET_VERSION changes with it.
- */
+/* Wheel odometry of all robots: dead reckoning from what the wheel encoders count. */
 
 #include <math.h>
 #include <stddef.h>

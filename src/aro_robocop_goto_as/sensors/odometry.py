@@ -7,7 +7,7 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from ..compiled import address, members
+from ..compiled import address, structure
 from ..geometry import Pose2D, compose, inverse
 from ..param_loading import parameter
 from ..robot.fleet import library
@@ -15,6 +15,8 @@ from .sensor import MeasurementCalls, RateParams, RobotIndices, Sensor, SensorCo
 
 ODOM, JOINTS = "odom", "joint_states"
 SLIP_STREAM = 2**32  # of the noise of all encoders; see sensor.py
+
+_Odometers = structure("sensors/odometry.c", "odometers")
 
 
 @dataclass(frozen=True)
@@ -37,16 +39,6 @@ class OdometryParams(RateParams):
     )
     odom_rate: int = parameter(30, low=1, about="[Hz] of odom, and of odom -> base_footprint on /tf")
     joint_state_rate: int = parameter(30, low=1, about="[Hz] of joint_states")
-
-
-class _OdometersStruct(ctypes.Structure):
-    """`struct odometers` of odometry.c."""
-
-    _fields_ = [
-        ("n", ctypes.c_int64),
-        *members(ctypes.c_void_p, "wheels poses twists read counted rolled"),
-        *members(ctypes.c_double, "slip tick"),
-    ]
 
 
 class WheelOdometry(Sensor):
@@ -73,7 +65,7 @@ class WheelOdometry(Sensor):
         self.poses, self.twists, self.map_from_odom = np.zeros((n, 3)), np.zeros((n, 2)), np.zeros((n, 3))
         self._read = np.zeros((n, 2))  # encoder angles [rad] at the latest update, in whole ticks
         self._counted, self._rolled = np.zeros((n, 2)), np.zeros((n, 2))  # wheel angles with slip, and true ones [rad]
-        self._struct = _OdometersStruct(
+        self._struct = _Odometers(
             n,
             address("wheels", self._wheels, (n, 2)),
             address("poses", self.poses, (n, 3)),
