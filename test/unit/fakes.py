@@ -6,7 +6,7 @@ from typing import Callable, List, Set, Tuple
 from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.robot.model import RobotSpec
-from aro_robocop_goto_as.simulation.agenda import Due
+from aro_robocop_goto_as.simulation.agenda import StepEvents
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.jobs import WallClock
 from aro_robocop_goto_as.simulation.lockstep import ControllerId
@@ -57,7 +57,7 @@ class Owner:
         self.simulator = make_simulator(p, world_named("empty"), [RobotSpec("", model_named("burger"), ORIGIN)])
         self.clock, self.end = FakeClock(), end
         self.nodes: Set[str] = set()  # that are connected to the robot's topics
-        self.seen: List[Tuple[int, Due]] = []  # stamp [ns] and what was due
+        self.seen: List[Tuple[int, StepEvents]] = []  # stamp [ns] and what was due
         self.events: List[object] = []
         self.on_tick: Callable[[int], object] = lambda stamp_ns: None  # called at each control tick
         self.is_stopped: Callable[[], bool] = lambda: self.simulator.time >= self.end
@@ -77,9 +77,9 @@ class Owner:
                 self.events.append(now.changes)
             if now.clock:
                 self.events.append("clock repeated")
-            if now.tick is not None:
-                self.events += [("late", now.tick.late)] if now.tick.late else []
-                self.events += [("gone", controller) for controller in now.tick.gone]
+            if now.outcome is not None:
+                self.events += [("late", now.outcome.late)] if now.outcome.late else []
+                self.events += [("gone", controller) for controller in now.outcome.gone]
 
     def _connected(self):
         return {ControllerId(0, node) for node in self.nodes}

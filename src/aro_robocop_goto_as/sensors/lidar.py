@@ -32,7 +32,7 @@ class RangeErrors:
             profile.range_min,
             profile.range_max,
             profile.noise,
-            profile.step,
+            profile.resolution,
             *((0.0, 0.0) if profile.zero_is_none else (-math.inf, math.inf)),
             address("normals", self._normals, (profile.samples,)),
             profile.samples,

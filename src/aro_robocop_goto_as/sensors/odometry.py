@@ -60,10 +60,10 @@ class WheelOdometry(Sensor):
         self._fleet, self._follows_truth = context.fleet, follows_truth
         self.in_world = params.odom_source == "world"
         self._slips = params.odom_slip > 0.0 and not self.in_world
-        self._tick = params.encoder_tick
+        self._resolution = params.encoder_tick
         self._wheels = context.fleet.wheels * [1.0 + params.odom_wheel_radius_error, 1.0]
         self.poses, self.twists, self.map_from_odom = np.zeros((n, 3)), np.zeros((n, 2)), np.zeros((n, 3))
-        self._read = np.zeros((n, 2))  # encoder angles [rad] at the latest update, in whole ticks
+        self._read = np.zeros((n, 2))  # encoder angles [rad] at the latest update, in whole multiples of the resolution
         self._counted, self._rolled = np.zeros((n, 2)), np.zeros((n, 2))  # wheel angles with slip, and true ones [rad]
         self._struct = _Odometers(
             n,
@@ -74,7 +74,7 @@ class WheelOdometry(Sensor):
             address("counted", self._counted, (n, 2)),
             address("rolled", self._rolled, (n, 2)),
             params.odom_slip,
-            self._tick,
+            self._resolution,
         )
         self._noise = np.zeros((n, 2))  # standard normal, of the next update if wheels slip
         self.update: Callable[[], object] = self._copy
@@ -103,7 +103,7 @@ class WheelOdometry(Sensor):
     def joint_angles(self) -> np.ndarray:
         """Wheel angles (n, 2) [rad] at the resolution of the encoders, without slip."""
         angles = self._fleet.wheel_angles
-        return np.floor(angles / self._tick) * self._tick if self._tick else angles
+        return np.floor(angles / self._resolution) * self._resolution if self._resolution else angles
 
     def _draw_slip(self) -> None:
         self.context.noise.stream(SLIP_STREAM).standard_normal(out=self._noise)

@@ -17,7 +17,7 @@ from ..robot.model import RobotSpec
 from ..sensors.catalog import Sensors
 from ..sensors.sensor import SensorContext
 from ..world.model import Occupancy, World
-from .agenda import Agenda, Due, Subscriptions
+from .agenda import Agenda, StepEvents, Subscriptions
 from .params import SimParams
 from .schedule import stamp_ns
 
@@ -85,7 +85,7 @@ class Simulator:
         fleet = self.engine.fleet
         fleet.commands[robot], fleet.commanded_at[robot] = clamped(twist, fleet.limits[robot]), self.time
 
-    def advance(self, subscriptions: Subscriptions, most: int = 1) -> Optional[Due]:
+    def advance(self, subscriptions: Subscriptions, most: int = 1) -> Optional[StepEvents]:
         """Run to the next step on which something is due, and measure it; None if that is more than `most` steps on.
 
         What is measured, for the robots that are subscribed to, is in the arrays of `sensors`.

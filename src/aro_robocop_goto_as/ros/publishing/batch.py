@@ -19,7 +19,7 @@ _FieldStruct, _ParcelStruct, _BatchStruct = (
     structure("ros/publishing/batch.c", name) for name in ("field", "parcel", "batch")
 )
 
-Posted = Tuple[DirectPublisher, PackedMessage]
+TopicMessage = Tuple[DirectPublisher, PackedMessage]
 
 
 @functools.lru_cache(maxsize=None)
@@ -38,12 +38,12 @@ class Batch:
     """
 
     def __init__(
-        self, messages: Sequence[Posted], last: Sequence[Posted] = (), filled: Sequence[PackedMessage] = ()
+        self, messages: Sequence[TopicMessage], last: Sequence[TopicMessage] = (), filled: Sequence[PackedMessage] = ()
     ) -> None:
         """`last`: messages sent after all others, such as the clock; `filled`: messages filled but not sent."""
         sent = [*messages, *last]
         self._kept = sent, filled  # batch.c also fills messages without a subscriber
-        self._parcels = [(*posted, link) for posted in sent for link in posted[0].links]
+        self._parcels = [(topic, message, link) for topic, message in sent for link in topic.links]
         fields = [
             _FieldStruct(field.kind, field.size, message.address + field.offset, field.source_address)
             for message in (*(message for _, message in sent), *filled)

@@ -9,14 +9,14 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image
 
 from ...names import absolute
-from ...web.scene import LINE, Group, Shape
+from ...web.scene import LINE, Group, Visual
 from ...web.state import PageState
 from ..trail import Trail
 from .part import Context, Inbox, Part
 
 CAMERA = "camera/rgb/image_raw"
 IMAGE_PERIOD = 0.25  # [s, wall] between two images
-TRAIL_LINE = Shape(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
+TRAIL_LINE = Visual(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
 
 
 class ViewPart(Part):

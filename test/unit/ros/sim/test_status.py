@@ -27,7 +27,7 @@ def warnings_at(monkeypatch: pytest.MonkeyPatch, asked: float, reached: List[flo
         clock.time += 1.0
         running.simulator.steps += round(factor * RATE)
         running.time_control.pacer.wait_time(running.simulator.steps)
-        assert topics.report()
+        assert topics.publish_due()
     return warnings
 
 
