@@ -29,7 +29,6 @@ from .params import BridgeParams
 
 SERVER_TIMEOUT = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
 UNLOGGED = (
-    "Detected jump back",  # tf2's warning at each message while two nodes publish /clock; the server tells of them once
     "Got a transition callback on a goal handle",  # actionlib's error if a goal starts before send_goal() has returned
 )
 IDLE_POLL = 0.1  # [s, wall] between two checks for shutdown while no click arrives
