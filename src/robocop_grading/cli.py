@@ -8,7 +8,7 @@ import traceback
 import zlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Callable, List, Mapping, Optional, Sequence, Tuple
+from typing import Callable, List, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import InstallationError, ParameterError, RobocopError
 from aro_robocop_goto_as.own_path import expect_own
@@ -22,7 +22,7 @@ from . import faults
 from .errors import GradingError, GradingSetupError, PlanError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
-from .grades import CheckOutcome, CheckResult, Grade, scored
+from .grades import CheckOutcome, Grade
 from .plan import Plan
 from .plan_file import load
 from .report.write import make_report_folder
@@ -60,32 +60,17 @@ def _show(text: str) -> None:
         print(text, file=sys.stderr, flush=True)
 
 
-def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
-    """The grade for a terminal: failures first, what passed in one line; `next_steps` by part."""
+def in_short(grade: Grade) -> List[str]:
+    """The lines for the terminal: mistakes, the one to fix first before the others; problems; the points."""
     lines = []
     for mistake in grade.mistakes:
-        check = mistake.check
-        lines.append(f"{'FAILED':13}  {_points([check])}  {check.marked(check.sentence)}")
-        lines.append(f"{'':13}  {check.words}")
-        if mistake.followers:
-            lines.append(f"{'':13}  {_points(mistake.followers)}  {mistake.consequences}")
-    for words, checks in grade.others.items():
-        outcome, _, why = words.partition(": ")
-        every = len(checks) == len(grade.checks)
-        names = "every check" if every else ", ".join(check.marked(check.name) for check in checks)
-        lines.append(f"{outcome:13}  {_points(checks)}  {names}{why and ': '}{why}")
-    lines += [f"graded: {file}" for file in grade.files]
+        lines.append(f"{mistake.check.name} costs {mistake.cost}: {mistake.sentence}")
+        lines.append(f"    {mistake.check.observed}")
+    lines += [words for words, checks in grade.others.items() if checks[0].outcome is not CheckOutcome.PASSED]
     lines += [f"problem: {problem}" for problem in grade.problems]
-    lines += [f"note: {note}" for note in grade.notes]
-    lines += [f"fix first: {mistake.sentence}" for mistake in grade.mistakes[:1]]
-    unfinished = {check.part for check in grade.checks if check.outcome is not CheckOutcome.PASSED and not check.extra}
-    lines += [f"next: {step}" for part, step in next_steps.items() if step and part in unfinished][:1]
+    lines += [f"notes, which cost no points: {len(grade.notes)}, in the report"] if grade.notes else []
     lines.append(f"{grade.name}: {grade.words}")
-    return "\n".join(printable(line) for line in lines)  # explanations may quote the submission's output
-
-
-def _points(checks: Sequence[CheckResult]) -> str:
-    return "{:4g} / {:<4g}".format(*scored(checks))
+    return [printable(line) for line in lines]  # causes may quote the submission's output
 
 
 def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[str, List[str]]:
@@ -179,7 +164,6 @@ def main() -> None:
             print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
         sys.exit(NO_GRADE)
     print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)
-    print(as_text(grade, {script.part: script.next_step for script in submission.scripts}))
-    print(f"scenarios: seed {plan.seed}")
+    print("\n".join(in_short(grade)))
     print(printable(f"report: {folder / 'report.html'}"))
     sys.exit(0 if grade.all_right else NOT_EVERYTHING)

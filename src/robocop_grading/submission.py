@@ -31,7 +31,7 @@ from robocop_hosting.scripts import (
 from robocop_hosting.tree import read_text
 from robocop_hosting.workspace import CPP, Environment, compat_environment, places, workspace_name
 
-from .advice import advice, next_todo
+from .advice import advice
 from .errors import GradingError
 from .files.exports import SEVERAL, holds_class
 from .new import SKELETON, make
@@ -48,7 +48,6 @@ class Script:
     part: str  # server or bridge
     path: Path
     arguments: List[str] = field(default_factory=list)
-    next_step: str = ""  # in a program that still has TODOs of the skeleton
     variables: Mapping[str, str] = field(default_factory=dict)  # of its environment, from its launch file
     shown: str = ""  # its path within the submission, and what starts it
 
@@ -150,12 +149,10 @@ def _ready(
 def _script(part: str, choice: Choice, top: Path) -> Script:
     node, name = choice.node, str(choice.path.relative_to(top))
     shown = name if node is None else f"{name}, started by {node.location}"
-    todo = next_todo(read_text(choice.path))
     return Script(
         part,
         choice.path,
         [] if node is None else [*node.arguments, f"__name:={node.name}"],  # without a launch file as by rosrun
-        f"{todo} in {name}" if todo else "",
         {} if node is None else node.variables,
         shown,
     )
