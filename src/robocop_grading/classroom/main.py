@@ -31,8 +31,9 @@ from ..scenarios import MAX_SEED
 from ..submission import lab_environment
 from ..texts import printable_lines, shortened
 from .hand_ins import collect
+from .overview import page
 from .results import STAMP as RESULT
-from .results import WAITING, Results, StoredGrade, page, summary, write_atomically
+from .results import Results, StoredGrade, write_atomically
 from .summary import Summary, pace
 from .table import one_line, table
 from .worker import work
@@ -40,8 +41,8 @@ from .worker import work
 CSV, HTML = "grades.csv", "index.html"
 STAMP, PLAN = ".robocop_class", ".plan.yaml"  # in the folder of the results: the seed, and a copy of the plan
 WORKERS_LOG = ".workers.log"  # in the folder of the results
-PERIOD = 5.0  # [s, wall] after which the table and the overview are written anew, at the earliest
 MAX_LINE = 300  # characters of a hand-in's problems on the terminal
+LEFT = "not graded yet: run the same command again to continue"
 NEW_POINTS = "the points have changed: the table and the overview have the new ones, reports the old ones until --again"
 AGAIN = "also grade these hand-ins, or all, if no name follows, that have a result"
 CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
@@ -61,17 +62,16 @@ class Gradebook:
             for name, digest in hand_ins.items()
             if name not in again and results.has(name, digest)
         }
-        self._again = again
         left = [name for name in hand_ins if name not in self.done]
         self.waiting = {name: hand_ins[name] for name in sorted(left, key=lambda name: name not in again)}
         self.problems: Dict[str, str] = {}
         self._started, self._before = time.monotonic(), {*self.done}
-        self._next_write = 0.0  # [s, wall]
 
     @property
     def figures(self) -> Summary:
         """How many hand-ins are judged so far, and their points."""
-        return summary(list(self.done.values()), self.plan, len(self.problems))
+        judged = [result.points for result in self.done.values() if result.is_judged]
+        return Summary(judged, len(self.done) - len(judged) + len(self.problems), self.plan.points)
 
     @property
     def pace(self) -> str:
@@ -85,7 +85,8 @@ class Gradebook:
         reasons = {name: " | ".join(it.problems) for name, it in sorted(self.done.items()) if not it.is_judged}
         reasons.update(self.problems)
         told = [f"not gradable: {it}: {why}" for it, why in reasons.items()]
-        return self.figures.lines() + [shortened(one_line(it), MAX_LINE) for it in told]
+        figures = [it for it in (self.figures.counts, self.figures.averages) if it]
+        return figures + [shortened(one_line(it), MAX_LINE) for it in told]
 
     def add(self, name: str, problem: str) -> str:
         """Note that a hand-in has a result, or the reason why it has none; return a line about it for the terminal."""
@@ -94,30 +95,18 @@ class Gradebook:
             return one_line(f"{name}: {problem}")
         result = self.done[name] = self.results.read(name)
         self.waiting.pop(name, None)
-        if time.monotonic() >= self._next_write:
-            self.write(running=True)
         problems = shortened(f" ({' | '.join(result.problems)})", MAX_LINE) if result.problems else ""
         words = f"{result.words if result.is_judged else 'not gradable'}, {result.seconds:.0f} s{problems}"
         left = f"; {self.pace}" if self.pace else ""
         return one_line(f"[{len(self.done)}/{self.count}] {name}: {words}{left}")
 
-    def add_stored(self) -> None:
-        """Add the results that workers have stored but could not report.
-
-        A hand-in that is graded again may still have its older result, which is not added.
-        """
-        for name, digest in list(self.waiting.items()):
-            if name not in self._again and self.results.has(name, digest):
-                self.add(name, "")
-
-    def write(self, running: bool) -> None:
+    def write(self) -> None:
         """Write the table and the overview of the results so far."""
         results, folder = [self.done[name] for name in sorted(self.done)], self.results.folder
         write_atomically(folder / CSV, table(results, self.plan, self.problems, self._people))
-        waiting = {name: self.problems.get(name, WAITING) for name in self.waiting}
-        html = page(self.folder.name, results, self.plan, waiting, running, self.pace, self._people)
+        missing = {name: self.problems.get(name, LEFT) for name in self.waiting}
+        html = page(self.folder.name, results, self.plan, self.figures, missing, self._people)
         write_atomically(folder / HTML, html)
-        self._next_write = time.monotonic() + PERIOD
 
 
 def arguments() -> argparse.Namespace:
@@ -149,7 +138,6 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
     if not args.unsafe:
         expect_private(folder)
     expect_own(out, STAMP, folder)
-    class_plan(args, out, share)
     given, folder = folder, class_folder(folder, (CSV, HTML))
     if folder != given:
         print(f"{one_line(str(folder))} is the class: nothing else is in {one_line(str(given))}", flush=True)
@@ -161,7 +149,7 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
     version = ElementTree.parse(share / "package.xml").findtext("version")
     make_report_folder(out, STAMP)
     with scratch_folder(), exclusive(out / ".run"):
-        plan = class_plan(args, out, share)  # now, as a grading that ran until now may have drawn a seed
+        plan = class_plan(args, out, share)
         results = Results(out, plan, version or "")
         text = plan.path.read_text(encoding="utf-8")
         new_points = (out / PLAN).is_file() and (out / PLAN).read_text(encoding="utf-8") != text
@@ -232,8 +220,7 @@ def class_plan(args: argparse.Namespace, out: Path, share: Path) -> Plan:
 
 
 def grade(gradebook: Gradebook, scheduler: str, workers: int, task: Callable[[Path], None]) -> None:
-    """Grade the remaining hand-ins; if interrupted, write what is done, say so, and raise KeyboardInterrupt."""
-    gradebook.write(running=bool(gradebook.waiting))
+    """Grade the remaining hand-ins, and write what is done; if interrupted, say so, and raise KeyboardInterrupt."""
     try:
         if gradebook.waiting:
             from .cluster import connected, done, send_child_errors_to  # importing dask takes half a second
@@ -246,11 +233,10 @@ def grade(gradebook: Gradebook, scheduler: str, workers: int, task: Callable[[Pa
                     orphans.reap_adopted("bwrap")  # one of each node
                     print(gradebook.add(path.name, problem), flush=True)
     except KeyboardInterrupt:
-        gradebook.add_stored()
         with contextlib.suppress(OSError):  # the terminal may be closed
             so_far = f"{len(gradebook.done)} of {gradebook.count} graded"
             print(f"\ninterrupted: {so_far}; run the same command again to continue", file=sys.stderr)
         sys.stderr = open(os.devnull, "w")  # for what dask's objects report when they are deleted
         raise
     finally:
-        gradebook.write(running=False)
+        gradebook.write()

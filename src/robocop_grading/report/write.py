@@ -206,7 +206,7 @@ _PAGES = jinja2.Environment(
     lstrip_blocks=True,
 )
 _PAGES.filters.update(
-    css=lambda outcome: outcome.partition(":")[0].split()[0],  # the class of an outcome
+    css=lambda outcome: outcome.partition(":")[0].partition(" ")[0],  # the class of an outcome
     of=lambda checks: "{:g} / {:g}".format(*scored(checks)),
     points=lambda points: "–" if points is None else f"{points:g}",
     printable=printable_lines,
