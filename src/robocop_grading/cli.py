@@ -37,8 +37,8 @@ NOT_EVERYTHING, WRONG_USE, NO_GRADE, NOT_GRADED, INTERRUPTED = 1, 2, 3, 4, 130
 SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
 ALL_PLOTS = "draw plots and keep bags of all scenarios (default: of those in which a check failed)"
 WRONG_USES = (GradingSetupError, InstallationError, ParameterError, PlanError)
-MAX_SHOWN = 1_000  # characters of an error
-STAMP = ".robocop_report"  # in a folder of a report
+MAX_ERROR = 1_000  # characters of an error
+REPORT_STAMP = ".robocop_report"  # in a folder of a report
 
 
 def progress(plan: Plan, parts: Sequence[str]) -> Callable[[str, str], None]:
@@ -121,7 +121,7 @@ def _plan(args: argparse.Namespace, share: Path) -> Plan:
 def _kept_traceback(args: argparse.Namespace) -> Path:
     """The path of a file in the report's folder, to which the traceback of the present exception is written."""
     folder = Path(args.report or report_folder(places()[0] / "reports", args.path, not args.only))
-    return faults.keep([traceback.format_exc()], make_report_folder(folder, STAMP))
+    return faults.keep([traceback.format_exc()], make_report_folder(folder, REPORT_STAMP))
 
 
 def main() -> None:
@@ -131,9 +131,9 @@ def main() -> None:
     try:
         state, share = places()
         if args.report:
-            expect_own(Path(os.path.realpath(args.report)), STAMP, Path(os.path.realpath(args.path)))
+            expect_own(Path(os.path.realpath(args.report)), REPORT_STAMP, Path(os.path.realpath(args.path)))
         plan = _plan(args, share)
-        given = make_report_folder(Path(args.report), STAMP) if args.report else None
+        given = make_report_folder(Path(args.report), REPORT_STAMP) if args.report else None
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"])
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
         with scratch_folder(), exclusive(folder_in_use):
@@ -144,7 +144,8 @@ def main() -> None:
             submission = replace(submission, notes=[*submission.notes, *notes])
             if not any(plan.examines(script.part) for script in submission.scripts):
                 raise GradingSetupError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
-            folder = given or make_report_folder(report_folder(state / "reports", args.path, plan.is_whole), STAMP)
+            usual = report_folder(state / "reports", args.path, plan.is_whole)
+            folder = given or make_report_folder(usual, REPORT_STAMP)
             on_progress = progress(plan, [script.part for script in submission.scripts])
             runner = Runner(plan, state, sandbox, on_progress)
             grade = grade_submission(runner, submission, folder, all_plots=args.all_plots)
@@ -158,7 +159,7 @@ def main() -> None:
         ignore_all()
         sys.exit(INTERRUPTED)
     except Exception as error:  # the grader failed on this submission
-        shown = printable_lines(repr(error))[:MAX_SHOWN] + faults.changed_sources()
+        shown = printable_lines(repr(error))[:MAX_ERROR] + faults.changed_sources()
         print(f"robocop grade: could not be graded: {shown}", file=sys.stderr)
         with contextlib.suppress(OSError, RobocopError):  # the disk may be full
             print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)

@@ -9,10 +9,9 @@ from ..files.exports import Person
 from ..grades import CheckOutcome
 from ..plan import PARTS, Plan
 from ..report.write import render
-from .results import StoredGrade
+from .results import MAX_TOLD, StoredGrade
 from .summary import Summary
 
-MAX_TEXT = 300  # characters of a hand-in's problems, and of a cause
 MAX_CAUSES = 3
 SYMBOLS = {"passed": "●", "failed": "✕", "not reached": "○", "not handed in": "–"}
 
@@ -35,7 +34,7 @@ def page(
         figures=figures,
         missing=missing,
         full_names={name: person.full_name for name, person in people.items()},
-        longest=MAX_TEXT,
+        longest=MAX_TOLD,
         symbols=SYMBOLS,
         checks=list(_checks(results, plan)),
     )

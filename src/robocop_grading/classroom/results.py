@@ -15,7 +15,8 @@ from ..checks import Failed
 from ..grades import CheckOutcome, CheckResult, Grade
 from ..plan import CheckPlan, Plan, total
 
-STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
+HAND_IN_STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
+MAX_TOLD = 300  # characters of a hand-in's problems, and of a cause, on the terminal and in the overview
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class Results:
     def has(self, name: str, digest: str) -> bool:
         """Return whether a hand-in was graded with its present content, plan (but for points) and grader."""
         try:
-            stamp = json.loads((self.folder / name / STAMP).read_text())
+            stamp = json.loads((self.folder / name / HAND_IN_STAMP).read_text())
         except (OSError, ValueError):
             return False
         return bool(stamp.get("made_from") == self._from(digest))
@@ -67,12 +68,12 @@ class Results:
         For a moment between two renames, a reader sees none.
         """
         final = self.folder / name
-        expect_own(final, STAMP)
+        expect_own(final, HAND_IN_STAMP)
         new = Path(tempfile.mkdtemp(prefix=".new-", dir=self.folder))
         new.chmod(0o755)
         shutil.copytree(report, new, dirs_exist_ok=True)
         stamp = {"made_from": self._from(digest), "seconds": round(seconds, 1)}
-        (new / STAMP).write_text(json.dumps(stamp, indent=1))
+        (new / HAND_IN_STAMP).write_text(json.dumps(stamp, indent=1))
         old = new.with_name(f"{new.name}.old")
         if final.exists():
             os.rename(final, old)
@@ -82,7 +83,7 @@ class Results:
     def read(self, name: str) -> StoredGrade:
         """The result that is stored for a hand-in, with the plan's points."""
         folder = self.folder / name
-        raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / STAMP).read_text())
+        raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / HAND_IN_STAMP).read_text())
         checks = [_check(it, self._checks[it["name"]]) for it in raw["checks"]]
         problems, notes = (tuple(raw.get(key, ())) for key in ("problems", "notes"))
         return StoredGrade(name, tuple(checks), problems, notes, seconds=stamp["seconds"])

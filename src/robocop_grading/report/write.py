@@ -25,7 +25,7 @@ from ..texts import printable, printable_lines, shortened
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
 LEAD = 1.0  # [s] before a failure, from where on a replay shows it
-MAX_LINES = 60  # of a node's output in the report
+MAX_OUTPUT = 60  # of a node's output in the report
 
 
 def make_report_folder(folder: Path, stamp: str) -> Path:
@@ -171,7 +171,7 @@ def _scenarios(
                 "failed": failed,
                 "replay": replay(part, record),
                 "plots": [svg for svg in (_plot(plot, record, []) for plot in plots) if svg],
-                "lines": record.lines[:MAX_LINES],
+                "lines": record.lines[:MAX_OUTPUT],
             }
 
 
