@@ -11,6 +11,7 @@ from robocop_hosting.tree import temporary_folder
 
 from . import judge
 from .grades import Grade, completed
+from .plan import PARTS
 from .record import Record
 from .report import write as report
 from .runner import Runner
@@ -38,15 +39,21 @@ def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = Fa
     problems: Dict[str, str] = {}
     with temporary_folder("robocop-grade-") as work:
         notes = [] if plan.is_whole else [NOT_WHOLE]
+        missing: List[str] = []
         for script in (script for script in submission.scripts if plan.examines(script.part)):
             recorded = runner.run(submission, script, Path(work, script.part))
             records[script.part], problems[script.part] = recorded.records, recorded.problem
-            said = *recorded.told, *_missing_modules(recorded.records, script.path)
-            notes += [f"{script.part}: {it}" for it in said]
+            notes += [f"{script.part}: {it}" for it in recorded.told]
+            missing += [f"{script.part}: {it}" for it in _missing_modules(recorded.records, script.path)]
         judged = completed(judge.judge(submission.name, plan, records, problems), plan)
         told = dict.fromkeys([*judged.notes, *notes, *(submission.notes if plan.is_whole else ())])
-        judged = replace(judged, files=tuple(submission.files), notes=tuple(told))
+        judged = replace(
+            judged, files=tuple(submission.files), problems=(*judged.problems, *missing), notes=tuple(told)
+        )
         folder.mkdir(parents=True, exist_ok=True)
+        for part in PARTS:
+            for earlier in folder.glob(f"{part}-*.bag"):
+                earlier.unlink()
         for bag in sorted(Path(work).glob("*/*.bag")):
             if all_plots or judged.failed_in(*bag.stem.split("-", 1)):
                 shutil.copyfile(bag, folder / bag.name)

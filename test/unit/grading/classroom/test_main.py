@@ -28,11 +28,11 @@ def grade_class(folder, monkeypatch):
                 keep(gradebook.results, name, digest=gradebook.waiting[name])
                 ran.append(name)
                 gradebook.add(name, "")
-            gradebook.write(running=False)
+            gradebook.write()
 
         monkeypatch.setenv("ROBOCOP_STATE", str(folder.parent / "state"))
         monkeypatch.setenv("ROBOCOP_SHARE", ROOT)
-        monkeypatch.setattr(main, "grade", stand_in)
+        monkeypatch.setattr(main, "grade_waiting", stand_in)
         monkeypatch.setattr(main, "lab_environment", lambda *_: None)
         given = {"folder": str(hand_ins), "report": report, "plan": plan and str(plan), "seed": seed, "again": again}
         gradebook = main.grade_class(Namespace(workers=1, scheduler="", unsafe=True, **given))
