@@ -61,7 +61,6 @@ class Scheduler:
         self.queue: Deque[Waiter] = deque()  # whose turns are next
         self.starting = 0  # threads that got their first turn and have not begun to run
         self.turns = 0  # so far
-        self.requests = 0  # of the grader that have been answered
         self._sleepers: List[Tuple[int, int, Waiter]] = []  # a heap: deadline [ns], number in order of begin, wait
         self._numbers = itertools.count()
         self._spent: Dict[int, Tuple[int, float]] = {}  # by thread: a time [ns], and the share of work done at it
