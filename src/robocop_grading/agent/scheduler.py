@@ -68,12 +68,8 @@ class Scheduler:
         os.register_at_fork(after_in_child=self._leave_alone)
 
     def _leave_alone(self) -> None:
-        """In a forked child, which has none of the other threads: everything is as without the agent."""
-        self.active, self.guard, self.starting = False, _system.RLock(), 0
-        self.running.clear()
-        self.background.clear()
-        self.calling.clear()
-        self.queue.clear()
+        """In a forked child everything is as without the agent."""
+        self.active = False
 
     # -- for the threads --
 
