@@ -44,7 +44,6 @@ class Program:
         mine.settimeout(PATIENCE)
         self.published: List[Tuple[str, bytes]] = []
         self.told = {}  # the last TOPICS
-        self.has_child = False  # a forked child has become a node
         self._channel, self._frames, self._answer = mine, mine.makefile("rb"), answer
         self.send(wire.SETUP, pickle.dumps((dict(parameters), list(offered))))
 
@@ -76,8 +75,6 @@ class Program:
                     self.published.append(wire.split(body))
                 elif kind == wire.TOPICS:
                     self.told = json.loads(body)
-                elif kind == wire.CHILD:
-                    self.has_child = True
                 elif kind == wire.CALL:
                     self.send(wire.REPLY, self._answer)
         except (OSError, struct.error):

@@ -50,21 +50,15 @@ class RequestLoop:
         self._descriptor = descriptor
         self._writing, self._turn = allocate_lock(), allocate_lock()
         self._turn.acquire()  # free while the grader waits for an answer
-        os.register_at_fork(after_in_child=self._begin_anew)
         self._budget = CpuBudget()
         self._busy = False  # the node still ran at the end of the last request
         self._programs = 0  # of ROS that the grader has been told of
         _, body = self._read()
         parameters, offered = pickle.loads(body)
         self.grader = ros_graph.SimulatorProxy(self._publish, self._call, offered)
-        self.grader.tell_of_child = lambda: self._write(wire.CHILD, b"")
         for name, value in parameters.items():
             self.grader.master.setParam("/robocop_sim", name, value)
         self.clock = ros.RosClock(clock_ns, lambda data: self.grader.feed(ros_graph.CLOCK, data))
-
-    def _begin_anew(self) -> None:
-        """In a forked child, which may publish on the topics that it has inherited."""
-        self._writing = allocate_lock()
 
     # -- the wire --
 
@@ -118,7 +112,6 @@ class RequestLoop:
             self._turn.acquire()
             self.grader.end_probes()
             self._tell()
-            scheduler.requests += 1  # what the grader sends from now on belongs to the next one
             self._write(wire.DONE, wire.TIMES.pack(scheduler.now_ns, scheduler.next_deadline()))
             if self._busy:
                 self._freeze()
@@ -126,10 +119,10 @@ class RequestLoop:
     def _tell(self) -> None:
         """Tell the grader the node's topics, programs of ROS that it has started, and delays, if they have changed."""
         self.grader.note_delays()
-        if self.grader.has_news or len(stuck.children.ros_programs) != self._programs:
-            self.grader.has_news, self._programs = False, len(stuck.children.ros_programs)
+        if self.grader.has_news or len(stuck.children.programs) != self._programs:
+            self.grader.has_news, self._programs = False, len(stuck.children.programs)
             told = connections.topics(self.grader)
-            told.update(programs=sorted(stuck.children.ros_programs), delays=sorted(self.grader.delays.items()))
+            told.update(programs=sorted(stuck.children.programs), delays=sorted(self.grader.delays.items()))
             self._write(wire.TOPICS, json.dumps(told).encode())
 
     def _freeze(self) -> None:

@@ -1,20 +1,13 @@
-"""rospy's time: /clock, sleeps until a time on it, and waits for a message."""
+"""rospy's time: /clock, and sleeps until a time on it."""
 
-import contextlib
 import functools
-import math
-import queue
 import struct
 import sys
-import time
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Any, Callable, List, Tuple
 
 from . import clock
 from .scheduler import NEVER, Waiter, scheduler
 
-KEPT = {("/odom", "nav_msgs/Odometry"), ("/scan", "sensor_msgs/LaserScan")}
-LOOK_NS = 10_000_000  # [ns] from one look of rospy.wait_for_message() to the next
-SHUTDOWN_LOOK = 1.0  # [s] from one look at whether rospy has been shut down to the next
 MESSAGES, MESSAGES_TIME = 10, 0.01  # a thread's messages at one time, and how long more take [s]: 1 ms each
 CLOCK_MESSAGE = struct.Struct("<III")  # length, secs, nsecs
 
@@ -81,8 +74,6 @@ def install(shown: RosClock) -> None:
     from rospy.impl import simtime
 
     simtime.init_simtime = _init_simtime(simtime, shown)
-    for module in (rospy, rospy.client):
-        module.wait_for_message = wait_for_message
     for module in (rospy, rospy.timer):
         module.sleep = _sleeping(rospy.timer.sleep, shown)
     for module in (rospy, rospy.rostime):
@@ -129,65 +120,3 @@ def _then(function: Any, afterwards: Callable[[], None]) -> Any:
         return value
 
     return call
-
-
-class _Subscription:
-    """A subscription that calls of wait_for_message() share."""
-
-    def __init__(self, topic: str, topic_type: Any) -> None:
-        self._topic, self._type = topic, topic_type
-        self._waiting: List[Tuple[int, queue.Queue[Any]]] = []  # for messages of a later turn than this
-        self.subscriber: Any = None
-
-    def _receive(self, message: Any) -> None:
-        for waiting in list(self._waiting):
-            if waiting[0] < scheduler.requests:
-                self._waiting.remove(waiting)
-                waiting[1].put(message)
-
-    def next_message(self, end_ns: int) -> Any:
-        """The next message, at the time of rospy's look for it; None if rospy is shut down, or at `end_ns` [ns]."""
-        import rospy
-
-        started_ns, messages = scheduler.now_ns, queue.Queue()  # type: int, queue.Queue[Any]
-        # A subscription made only now would miss the messages that are already on their way.
-        self._waiting.append((-1 if self.subscriber is None else scheduler.requests, messages))
-        if self.subscriber is None:
-            self.subscriber = rospy.Subscriber(self._topic, self._type, self._receive)
-        while not rospy.is_shutdown() and scheduler.now_ns < end_ns:
-            with contextlib.suppress(queue.Empty):
-                message = messages.get(timeout=min(SHUTDOWN_LOOK, (end_ns - scheduler.now_ns) / 1e9))
-                time.sleep((LOOK_NS - (scheduler.now_ns - started_ns) % LOOK_NS) / 1e9)
-                return message
-        return None
-
-
-_kept: Dict[Tuple[str, Any], _Subscription] = {}
-
-
-def wait_for_message(topic: str, topic_type: Any, timeout: Any = None) -> Any:
-    """rospy's function, but it is woken up by the message, and stays subscribed to what the robot always sends.
-
-    rospy registers with the master and connects for each message, and looks for it every LOOK_NS.
-    """
-    import rospy
-
-    key = rospy.resolve_name(topic), topic_type
-    subscription = _kept.get(key) or _Subscription(topic, topic_type)
-    # Only of the lab's type: a subscription of another one would decide the type of the node's later ones.
-    if (key[0], getattr(topic_type, "_type", None)) in KEPT:
-        _kept[key] = subscription
-    if isinstance(timeout, rospy.Duration):
-        timeout = timeout.to_sec()
-    if timeout is not None:  # rospy sleeps before it looks at the time
-        timeout = max(1, math.ceil(timeout * 1e9 / LOOK_NS)) * LOOK_NS / 1e9
-    try:
-        message = subscription.next_message(scheduler.deadline(timeout))
-    finally:
-        if key not in _kept and subscription.subscriber is not None:
-            subscription.subscriber.unregister()
-    if rospy.is_shutdown():
-        raise rospy.ROSInterruptException("rospy shutdown")
-    if message is None:
-        raise rospy.ROSException(f"timeout exceeded while waiting for message on topic {topic}")
-    return message

@@ -53,7 +53,6 @@ class SimulatorProxy:
         master.thread_pool = master.reg_manager.thread_pool = _AtOnce()
         self.master: Any = SimpleNamespace(**{name: getattr(master, name) for name in MASTER_METHODS})
         self.node: Any = None  # rospy's handler of requests to the node itself
-        self.tell_of_child: Callable[[], object] = lambda: None
         self.has_news = False  # the node has told the master something
         self.delays: Dict[str, float] = {}  # [s] by topic, of its messages until the node read them
         self._offered: Dict[str, Header] = {}  # topics that it publishes and services, by name

@@ -61,7 +61,6 @@ class Scheduler:
         self.queue: Deque[Waiter] = deque()  # whose turns are next
         self.starting = 0  # threads that got their first turn and have not begun to run
         self.turns = 0  # so far
-        self.requests = 0  # of the grader that have been answered
         self._sleepers: List[Tuple[int, int, Waiter]] = []  # a heap: deadline [ns], number in order of begin, wait
         self._numbers = itertools.count()
         self._spent: Dict[int, Tuple[int, float]] = {}  # by thread: a time [ns], and the share of work done at it
@@ -69,12 +68,8 @@ class Scheduler:
         os.register_at_fork(after_in_child=self._leave_alone)
 
     def _leave_alone(self) -> None:
-        """In a forked child, which has none of the other threads: everything is as without the agent."""
-        self.active, self.guard, self.starting = False, _system.RLock(), 0
-        self.running.clear()
-        self.background.clear()
-        self.calling.clear()
-        self.queue.clear()
+        """In a forked child everything is as without the agent."""
+        self.active = False
 
     # -- for the threads --
 

@@ -15,7 +15,9 @@ from .processes import descendants_of, words_of
 from .scheduler import scheduler
 from .threads import native_ids
 
-STARTS = ("subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system")  # audit events
+FORKS = ("os.fork", "os.forkpty")  # audit events
+STARTS = (*FORKS, "subprocess.Popen", "os.posix_spawn", "os.system")
+FORKED = "other Python processes"
 ROS_PROGRAM = re.compile(r"\b(?:ros(?:bag|launch|node|param|run|service|topic)|roscore)\b")
 TICKS_PER_SECOND = os.sysconf("SC_CLK_TCK")
 ASLEEP = re.compile(r"^State:\s*[ST].*^voluntary_ctxt_switches:\s*(\d+)", re.MULTILINE | re.DOTALL)  # in a status file
@@ -52,13 +54,13 @@ class ChildProcesses:
         self.were_started = False  # whether the hand-in has ever started a process
         self.busy = False  # whether a process ran, or waited for the processor or a disk, at the last poll
         self.processor_time = 0.0  # [s] of the processes that lived at the last poll
-        self.ros_programs: Set[str] = set()  # programs of ROS that were started; they find no master
+        self.programs: Set[str] = set()  # of ROS, and forked processes, that were started; they find no master
         sys.addaudithook(self._notice)
 
     def _notice(self, event: str, arguments: object) -> None:
         if event in STARTS:
             self.were_started = True
-            self.ros_programs.update(ROS_PROGRAM.findall(repr(arguments)))
+            self.programs.update([FORKED] if event in FORKS else ROS_PROGRAM.findall(repr(arguments)))
 
     def poll(self) -> None:
         """Update `busy` and `processor_time`, if the hand-in has ever started a process."""

@@ -9,14 +9,13 @@ agent -> grader
     MESSAGE   a topic, and bytes of the stream of its messages
     CALL      a service, and the request as on TCPROS; a REPLY follows
     TOPICS    the node's topics, the programs of ROS that the node has started, and delays, as JSON
-    CHILD     a forked child has become a node, which nobody connects
     DONE      until when [ns], and when the node next does something by itself [ns]
 """
 
 import struct
 from typing import Iterable, Iterator, Tuple
 
-SETUP, TOPIC, GO, REPLY, MESSAGE, CALL, TOPICS, CHILD, DONE = range(9)
+SETUP, TOPIC, GO, REPLY, MESSAGE, CALL, TOPICS, DONE = range(8)
 HEAD = struct.Struct("<IB")  # of a frame: bytes of its body, kind
 LENGTH = struct.Struct("<I")  # of a message, as on TCPROS
 TIMES = struct.Struct("<qq")  # of GO and of DONE

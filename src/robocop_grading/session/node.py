@@ -24,7 +24,6 @@ from .topics import Topics
 NEVER = 1 << 62  # [ns]
 MAX_LAST_READS = 1000  # reads after a node has ended; a child of it may go on sending
 POLL = 0.005  # [s, wall] between two looks at other things while the node's answer is waited for
-CHILD = "rospy in a child process"
 ROS_PARAMETERS = {
     "/use_sim_time": True,
     # rospy asks the master for it with every line it logs, unless it is set.
@@ -157,8 +156,6 @@ class Node:
                 self._channel.send(wire.REPLY, self._services.call(*wire.split(body)))
             elif kind == wire.TOPICS:
                 self._topics.update_node_topics(body)
-            elif kind == wire.CHILD:
-                self._topics.programs.add(CHILD)
             else:
                 raise GraderLostError(UNREADABLE)
         except (struct.error, UnicodeError) as error:

@@ -1,7 +1,5 @@
 """The scheduler by itself, without threads: which thread it no longer waits for, and who gets the next turn."""
 
-import os
-
 from robocop_grading.agent.scheduler import Scheduler, Waiter
 
 
@@ -34,14 +32,3 @@ def test_no_other_thread_gets_a_turn_while_one_is_being_started():
     assert list(scheduler.queue) == [woken] and scheduler.move_to_background(set())
     scheduler.cancel_start(starting)
     assert scheduler.running == {3} and not scheduler.starting
-
-
-def test_a_forked_child_has_none_of_the_threads_and_lives_on_the_wall_clock():
-    scheduler = Scheduler()
-    scheduler.running, scheduler.background, scheduler.calling, scheduler.starting = {1}, {1}, {1}, 1
-    scheduler.queue.append(Waiter(2))
-    child = os.fork()
-    if not child:
-        left = scheduler.active, scheduler.running, scheduler.background, scheduler.calling, scheduler.queue
-        os._exit(any(left) or scheduler.starting)
-    assert os.waitpid(child, 0)[1] == 0
