@@ -191,9 +191,7 @@ def test_mistake_fails_its_check_with_the_cause(name, record, words):
 
 
 @pytest.mark.parametrize("name", CHECKS)
-def test_empty_record_passes_only_the_checks_of_exceptions_and_deaths_and_fails_only_those_of_what_is_missing(
-    name,
-):
+def test_empty_record_passes_only_the_checks_of_exceptions_and_deaths_and_fails_only_those_of_what_is_missing(name):
     kinds = {"action_server": Failed, "waits_for_server": Failed}
     kinds.update(dict.fromkeys(("no_exception", "stays_alive", "bridge_alive"), type(PASSED)))
     verdict = CHECKS[name](Record("start", "server", up=False), LIMITS)
