@@ -199,22 +199,6 @@ def test_interrupted_while_workers_start_it_leaves_nothing_and_prints_no_traceba
     assert list(scratch.iterdir()) == []
 
 
-@pytest.mark.slow
-def test_unreachable_scheduler_is_reported(group, start, key_of_cluster, monkeypatch):
-    monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "2s")
-    grading = grade_class(start, group, "--scheduler", "tls://127.0.0.1:1")
-    output, _ = grading.communicate(timeout=TIMEOUT)
-    assert grading.returncode == 2
-    assert "no dask scheduler answers at tls://127.0.0.1:1" in output
-
-
-def test_scheduler_without_tls_is_refused(group, start):
-    grading = grade_class(start, group, "--scheduler", "tcp://127.0.0.1:1")
-    output, _ = grading.communicate(timeout=TIMEOUT)
-    assert grading.returncode == 2
-    assert "--scheduler tcp://127.0.0.1:1: expected tls://HOST:PORT" in output
-
-
 STRANGER = """
 import socket, ssl, sys
 context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)

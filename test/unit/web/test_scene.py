@@ -1,7 +1,5 @@
 """What is sent to the browsers when groups of shapes change."""
 
-from typing import List
-
 import pytest
 
 from aro_robocop_goto_as.geometry import Pose3D
@@ -14,8 +12,8 @@ class Api:
     """Stands in for the scene of a viser server: names of the nodes that are there, and all that were added."""
 
     def __init__(self):
-        self.nodes: List[str] = []
-        self.added: List[Handle] = []
+        self.nodes = []
+        self.added = []
 
     def __getattr__(self, name):
         def add(node, *arguments, **options):

@@ -8,6 +8,7 @@ import pytest
 from grading_records import PLAN, PLAN_FILE, keep, keep_grade
 from support import ROOT
 
+from aro_robocop_goto_as.errors import RobocopError
 from robocop_grading.classroom import main
 from robocop_grading.classroom.main import Gradebook, to_regrade
 from robocop_grading.classroom.results import Results
@@ -20,7 +21,7 @@ from robocop_grading.plan_file import MAX_SEED
 def grade_class(folder, monkeypatch):
     """Grades a class without running anything; the names that are graded, and the gradebook."""
 
-    def run(hand_ins=folder, report=None, plan=None, seed=None, again=None):
+    def run(hand_ins=folder, report=None, plan=None, seed=None, again=None, **options):
         ran = []
 
         def stand_in(gradebook, *_):
@@ -35,7 +36,7 @@ def grade_class(folder, monkeypatch):
         monkeypatch.setattr(main, "grade_waiting", stand_in)
         monkeypatch.setattr(main, "lab_environment", lambda *_: None)
         given = {"folder": str(hand_ins), "report": report, "plan": plan and str(plan), "seed": seed, "again": again}
-        gradebook = main.grade_class(Namespace(workers=1, scheduler="", unsafe=True, **given))
+        gradebook = main.grade_class(Namespace(**{"workers": 1, "scheduler": "", "unsafe": True, **given, **options}))
         return ran, gradebook
 
     return run
@@ -110,6 +111,16 @@ def test_results_of_another_class_are_not_replaced(folder, grade_class):
     (tuesday / "anna").mkdir()  # a later export of the same class
     (tuesday / "anna" / "robocop_goto_as.py").touch()
     assert grade_class(tuesday, report=str(first.results.folder))[0] == ["anna", "carl.py"]
+
+
+def test_class_among_the_systems_files_is_refused(grade_class):
+    with pytest.raises(RobocopError, match="/usr/bin: expected a submission outside /usr"):
+        grade_class(Path("/usr/bin"), unsafe=False)
+
+
+def test_scheduler_without_tls_is_refused(grade_class):
+    with pytest.raises(GradingSetupError, match="--scheduler tcp://127.0.0.1:1: expected tls://HOST:PORT"):
+        grade_class(scheduler="tcp://127.0.0.1:1")
 
 
 @pytest.fixture
