@@ -3,16 +3,16 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "../raycast/grid.h"
+#include "../raycast/tiles.h"
 #include "../robot/fleet.h"
 
 #define MARGIN 1e-6 /* [m] kept free, so that rounding never moves a disc into a wall */
-#define NEARBY 1.0  /* [m] the range within which walls are looked up in a grid */
+#define NEARBY 1.0  /* [m] the range within which walls are looked up in tiles */
 
 /* A world's cross-sections at all heights of a robot's body, in one plane. */
 struct body_section {
     const double *segments;  /* (n_segments, 2, 2) [m] */
-    const struct grid *grid; /* of the segments */
+    const struct tiles *tiles; /* of the segments */
     int64_t n_circles;
     const double *circles; /* (n_circles, 3) x, y, radius [m] */
 };
@@ -35,7 +35,8 @@ struct move {
     double free;         /* 0 to 1 */
 };
 
-/* The tiles from low to high [m] along an axis; none, first > last, outside of the grid and where a pose has overflowed. */
+/* The tiles from low to high [m] along an axis. None, with first > last: outside of all tiles, or for a pose that has
+ * overflowed. */
 static void tiles_between(double low, double high, double side, int64_t count, int64_t *first, int64_t *last)
 {
     double from = floor(low / side), to = floor(high / side);
@@ -47,16 +48,16 @@ static void tiles_between(double low, double high, double side, int64_t count, i
 static void visit_near(const struct body_section *section, double x, double y, double half,
                        void (*visit)(void *context, const double *segment), void *context)
 {
-    const struct grid *grid = section->grid;
+    const struct tiles *tiles = section->tiles;
     int64_t row, last_row, column, last_column, k;
-    tiles_between(x - half - grid->x, x + half - grid->x, grid->side, grid->columns, &column, &last_column);
-    tiles_between(y - half - grid->y, y + half - grid->y, grid->side, grid->rows, &row, &last_row);
-    for (k = 0; k < grid->n_everywhere; k++)
-        visit(context, section->segments + 4 * (int64_t)grid->everywhere[k]);
+    tiles_between(x - half - tiles->x, x + half - tiles->x, tiles->side, tiles->columns, &column, &last_column);
+    tiles_between(y - half - tiles->y, y + half - tiles->y, tiles->side, tiles->rows, &row, &last_row);
+    for (k = 0; k < tiles->n_everywhere; k++)
+        visit(context, section->segments + 4 * (int64_t)tiles->everywhere[k]);
     for (; row <= last_row && column <= last_column; row++) {
-        const int32_t *starts = grid->starts + row * grid->columns;
+        const int32_t *starts = tiles->starts + row * tiles->columns;
         for (k = starts[column]; k < starts[last_column + 1]; k++)
-            visit(context, section->segments + 4 * (int64_t)grid->members[k]);
+            visit(context, section->segments + 4 * (int64_t)tiles->members[k]);
     }
 }
 

@@ -15,7 +15,7 @@ import numpy as np
 from ..compiled import address, structure
 from ..geometry import Pose2D, Pose3D, quaternion_from_rpy
 from ..raycast.cross_section import CrossSection
-from ..raycast.grid_index import Tiles
+from ..raycast.tiles import Tiles
 from ..robot.fleet import Fleet, library
 from ..robot.model import BodyState
 from ..world.model import World

@@ -17,7 +17,7 @@ def _require_ok(status: Any, _function: object, _arguments: object) -> Any:
 
 @functools.lru_cache(maxsize=None)
 def load() -> ctypes.PyDLL:
-    """The library. It holds the GIL during a call, so two threads cannot use a grid's marks at once.
+    """The library. It holds the GIL during a call, so two threads cannot use the marks of tiles at once.
 
     InstallationError when it is missing, can't be loaded, or was built from other sources.
     """

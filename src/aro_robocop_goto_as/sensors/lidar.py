@@ -67,11 +67,9 @@ class Lidar(Sensor):
 
     def measurement_calls(self, robots: RobotIndices) -> MeasurementCalls:
         """Scan with these robots' lidars."""
-        cast = self._beams.casting(
-            self.context.sections.scene(self._mounts), robots, self.profile.range_max, self.ranges
-        )
+        cast = self._beams.casting(self.context.scenes.scene(self._mounts), robots, self.profile.range_max, self.ranges)
         return MeasurementCalls([cast, self._errors.adding(robots, self.context.episode, self.ranges)])
 
     def exact_distances(self, robot: int) -> np.ndarray:
         """What a lidar would measure now without noise and range_min: (samples,) [m]; no return = +inf."""
-        return self._beams.scan(self.context.sections.scene(self._mounts), [robot], self.profile.range_max)[0]
+        return self._beams.scan(self.context.scenes.scene(self._mounts), [robot], self.profile.range_max)[0]

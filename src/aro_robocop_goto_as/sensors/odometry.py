@@ -116,7 +116,7 @@ class WheelOdometry(Sensor):
             self.map_from_odom[robot] = compose(self._fleet.pose(robot), inverse(Pose2D(*pose)))
 
     def pose_now(self, robot: int) -> Pose2D:
-        """odom_from_footprint as the next update will see it, without the slip that it draws."""
+        """odom_from_footprint at the present wheel angles, without noise; the arrays stay as they are."""
         rows = (self.poses, self.twists, self._read, self._counted, self._rolled)
         before = [row.copy() for row in rows]
         self._noise[:] = 0.0

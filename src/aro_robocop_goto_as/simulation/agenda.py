@@ -1,4 +1,4 @@
-"""What is due on which step, and the calls that measure it, prepared once for all steps that are alike."""
+"""Which ticks and sensors are due on a step, and the calls that measure; steps on which the same is due share them."""
 
 from dataclasses import dataclass, field
 from typing import Dict, Mapping, Tuple

@@ -113,7 +113,7 @@ class Simulator:
             if self.moving:
                 self.engine.move_obstacles(self.world_time)
         if self.moving:
-            self.context.sections.move(self.world_time)
+            self.context.scenes.move(self.world_time)
 
     # -- the state of the world and of its robots --
 
@@ -159,7 +159,7 @@ class Simulator:
         if self.world.occupancy is not None:
             return self.world.occupancy
         model = self.robots[0].model
-        section = self.context.sections.section(model.height_of(model.base_from_scan))
+        section = self.context.scenes.section(model.height_of(model.base_from_scan))
         poses = [self.world_from_footprint(robot) for robot in range(len(self.robots))]
         starts = [*(robot.spawn for robot in self.robots), *poses]
         return occupancy_of(section.segments, section.circles_at_start, starts, self.params.world.map_resolution)
@@ -178,9 +178,9 @@ class Simulator:
         self.changes.add(Change.WORLD)
 
     def place(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
-        """Place a robot elsewhere, at rest. Wheel odometry continues, so map -> odom absorbs the jump.
+        """Place a robot elsewhere, at rest. Its wheel odometry does not notice, so map -> odom jumps instead.
 
-        The wheels' motion since the last odometry update belongs to the time before the jump.
+        What the wheels have turned since the last update of odometry counts as driven before the jump.
         """
         self.engine.update_fleet()
         odom_from_footprint = self.sensors.odometry.pose_now(robot)

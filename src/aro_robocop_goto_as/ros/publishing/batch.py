@@ -71,8 +71,8 @@ class Batch:
 
         `more`: the next messages follow at once, and the kernel may join them with these (MSG_MORE; 0.2 s at most).
 
-        A subscriber that takes nothing for publisher.STALL_TIMEOUT misses messages until it reads again. All
-        subscribers of a step share that time, because a stopped node can have many topics.
+        It waits for publisher.STALL_TIMEOUT at most, for all subscribers together: a stopped node can have many
+        topics. A subscriber that has taken nothing by then misses messages until it reads again.
         """
         with self._lock:
             if self._fill_and_send(self._pointer, stamp_ns, more):

@@ -55,8 +55,7 @@ class StatusTopics:
     def _watch_slip(self) -> None:
         """Note robots whose wheels turned at an obstacle until odometry was off by their radius, and warn once of each.
 
-        Where map -> odom follows the truth or is left to a localization, odometry's error does not stay. Where errors
-        of odometry are set, it may come from them.
+        Only where map -> odom is static, as nothing corrects odometry then, and no errors of odometry are set.
         """
         simulator = self._running.simulator
         odometry = simulator.params.sensors.odometry

@@ -25,7 +25,7 @@ class ViewPart(Part):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         gui, state = context.server.gui, context.state.now
-        self._with_trail = gui.add_checkbox("Trail", state.live or state.recorded)
+        self._with_trail = gui.add_checkbox("Trail", state.can_send or state.recorded)
         self._image = gui.add_image(np.zeros((3, 4, 3), np.uint8), label="camera", visible=False)
         self._message: Optional[Image] = None  # that is not shown yet
         self._image_at = 0.0  # [s, wall]

@@ -1,4 +1,4 @@
-"""A grid of square tiles that finds the segments near a point."""
+"""Square tiles that find the segments near a point."""
 
 import math
 
@@ -11,7 +11,7 @@ MAX_TILES = 1 << 20
 MAX_TILES_OF_SEGMENT = 4096  # that one segment is listed in; a longer one counts as near everywhere
 PAD = 1e-3  # [m] around each segment: rounding errors never make a beam hit it outside its tiles
 
-_Grid = structure("raycast/grid.h", "grid")
+_Tiles = structure("raycast/tiles.h", "tiles")
 
 
 class Tiles:
@@ -40,7 +40,7 @@ class Tiles:
         self._starts = np.concatenate([[0], np.cumsum(per_tile)]).astype(int32)
         self._tile_marks = np.zeros(tiles, np.int64)
         self.segment_marks = np.zeros(len(segments), np.int64)  # struct.mark of the last scan that compared the segment
-        self.struct = _Grid(  # created only once: it holds the mark counter
+        self.struct = _Tiles(  # created only once: it holds the mark counter
             *self._origin.tolist(),
             self._side,
             self._columns,
