@@ -1,13 +1,10 @@
-"""The ROS graph as the master knows it: published topics and action servers."""
+"""The ROS graph as the master knows it: published topics."""
 
 from dataclasses import dataclass
-from typing import Dict, List, Tuple
+from typing import List, Tuple
 
 import rosgraph
 import rospy
-
-# How a topic of an action server ends, after its name, and the type of that topic.
-RESULT, RESULT_TYPE = "/result", "Result"
 
 
 @dataclass(frozen=True)
@@ -31,12 +28,3 @@ def published_topics() -> List[Topic]:
         (Topic(name, types.get(name, ""), tuple(nodes)) for name, nodes in publishers if nodes),
         key=lambda topic: topic.name,
     )
-
-
-def action_servers() -> Dict[str, str]:
-    """Action type of each action server, by name: {"/robocop_goto_as": "aro_robocop_goto_as/GoToPositionAction"}."""
-    return {
-        topic.name[: -len(RESULT)]: topic.type[: -len(RESULT_TYPE)]
-        for topic in published_topics()
-        if topic.name.endswith(RESULT) and topic.type.endswith(f"Action{RESULT_TYPE}")
-    }

@@ -20,7 +20,7 @@ from ...web import text
 from ...web.page import floor_point
 from ...web.state import PageState
 from .. import convert, markers
-from ..client.goal_states import STATES, UNFINISHED, result_text
+from ..client.follower import STATES, UNFINISHED
 from ..connected_nodes import publishers_of
 from ..marker_shapes import MarkerStore
 from .part import Context, Inbox, Part
@@ -102,7 +102,7 @@ class GoalsPart(Part):
 
     def _on_result(self, _: float, message: GoToPositionActionResult) -> None:
         self._feedback, self._newest = None, message.status
-        self._ending = result_text(message.status.status, message.result.message)
+        self._ending = message.result.message or message.status.text
 
     def show(self, state: PageState) -> None:
         if state.resets != self._resets and self._newest is not None and not self._executing:
