@@ -4,10 +4,12 @@ import argparse
 import os
 import sys
 
+import rosgraph
+
 from ...errors import MasterError
 from ...names import robocop
-from ...probes import master, settings
 from ...process import signals
+from .. import graph, settings
 from .goto_arguments import NOT_REACHED, complain, parse
 
 
@@ -23,10 +25,10 @@ def main() -> None:
 
 
 def _run(args: argparse.Namespace) -> int:
-    uri = master.master_uri()
+    uri = rosgraph.get_master_uri()
     try:
         problem = settings.problem()
-        if not problem and not master.master_answers(uri):
+        if not problem and not graph.master_answers():
             problem = f"no ROS master answers at {uri}: start a system with {robocop()} run in another terminal"
     except MasterError as error:
         problem = str(error)

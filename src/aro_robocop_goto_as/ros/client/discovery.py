@@ -7,7 +7,6 @@ import rosgraph
 import rospy
 
 from ...names import ACTION_TYPE, robocop
-from ...probes import master
 from ...suggestions import did_you_mean
 from .. import graph
 
@@ -48,7 +47,7 @@ def hint(action: str, choice: str = "") -> str:
 
 def advice() -> str:
     """What a user can do about a server that is still missing, whichever system runs."""
-    return master.no_simulator(master.master_uri()) or (
+    return graph.no_simulator() or (
         "if a server has ended, the terminal of its system may say why: correct that, and start the system again "
         f"({robocop()} run has a server, {robocop()} sim --with the package's own, {robocop()} sim none)"
     )
