@@ -55,6 +55,14 @@ class Process(subprocess.Popen):
         raise AssertionError(f"process {self.pid} outlived SIGKILL: {self.args}")
 
 
+def is_running(uri, node):
+    """Return whether a node answers; a master also lists nodes that were killed."""
+    try:
+        return rosgraph.is_master_online(rosgraph.Master(CALLER, uri).lookupNode(node))
+    except rosgraph.MasterException:
+        return False
+
+
 class System:
     """Its settings and processes; as a context manager it ends what still runs, the newest first."""
 

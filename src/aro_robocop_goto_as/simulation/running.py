@@ -9,9 +9,7 @@ from .lockstep import Connected, TickOutcome
 from .simulator import Change, Simulator
 from .time_control import TimeControl
 
-MAX_SLEEP = (
-    0.05  # [s, wall] while asleep, jobs wait; a longer wait runs them as they come, at four times the cost
-)
+MAX_SLEEP = 0.05  # [s, wall] while asleep, jobs wait; a longer wait runs them as they come, at four times the cost
 
 
 class Round(NamedTuple):

@@ -11,7 +11,7 @@ from urllib.parse import quote
 
 import jinja2
 
-from aro_robocop_goto_as.cli.program import ROOT
+from aro_robocop_goto_as.names import ROOT
 
 from .. import faults
 from ..checks import CHECKS

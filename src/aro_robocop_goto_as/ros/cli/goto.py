@@ -18,10 +18,9 @@ from aro_robocop_goto_as.msg import GoToPositionFeedback
 from ...errors import FrameError, MasterError
 from ...names import ACTION, absolute_if_named, position_text, prefixed, robocop
 from ...param_loading import MAX_COORDINATE
-from ...probes import master, settings
 from ...process import signals
 from ...process.start import typed
-from .. import graph
+from .. import graph, settings
 from ..client.follower import Follower
 from ..client.goal_frame import GoalTransformer
 from ..waiting import wait_until
@@ -96,7 +95,7 @@ class Goto:
             wait_until(self.goal.is_up, SERVER_TIMEOUT)
         signals.reraise_if_interrupted()  # rospy may have swallowed it
         if not self.goal.is_up():
-            why = master.no_simulator(master.master_uri()) or (
+            why = graph.no_simulator() or (
                 "if it has ended, the terminal of its system says why; --robot NAME chooses one of several robots"
             )
             complain(f"no answer from {self.action} for {SERVER_TIMEOUT:g} s: {why}")
@@ -197,10 +196,10 @@ def main() -> None:
 
 
 def _run(args: argparse.Namespace) -> int:
-    uri = master.master_uri()
+    uri = rosgraph.get_master_uri()
     try:
         problem = settings.problem()
-        if not problem and not master.master_answers(uri):
+        if not problem and not graph.master_answers():
             problem = f"no ROS master answers at {uri}: start a system with {robocop()} run in another terminal"
     except MasterError as error:
         problem = str(error)

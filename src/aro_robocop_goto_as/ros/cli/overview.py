@@ -5,10 +5,12 @@ import re
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
+import rosgraph
+
 from ...errors import RobocopError
 from ...names import COMMAND_VARIABLE, SERVER, WEB, robocop
 from ...param_loading import from_dict
-from ...probes import master, x_display
+from ...probes import x_display
 from ...simulation.params import SimParams
 from ...web.access import default_host, is_loopback, url
 from ...web.params import WebParams
@@ -60,8 +62,9 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
 
 def _command() -> str:
     """The command line of ./robocop in a second terminal, which may not know this one's master."""
-    uri, command = master.master_uri(), robocop()
-    is_known = uri == master.DEFAULT_URI or COMMAND_VARIABLE in os.environ  # a container has one environment
+    uri, command = rosgraph.get_master_uri(), robocop()
+    is_default = uri == rosgraph.rosenv.DEFAULT_MASTER_URI
+    is_known = is_default or COMMAND_VARIABLE in os.environ  # a container has one environment
     return command if is_known else f"ROS_MASTER_URI={uri} {command}"
 
 

@@ -9,9 +9,9 @@ from std_msgs.msg import String
 from aro_robocop_goto_as.msg import SimStatus
 
 from ...names import ACTION, BRIDGE, SIMULATOR, absolute
-from ...probes import master
 from ...web import text
 from ...web.state import PageState
+from .. import graph
 from ..connected_nodes import publishers_of
 from .part import Context, Inbox, Part
 
@@ -55,7 +55,7 @@ class StatusPart(Part):
 
     def ask_master(self, state: PageState) -> None:
         asked = state.can_send and self._sim is None and self.context.server.get_clients()  # a visitor may have to wait
-        self._no_simulator = master.no_simulator(master.master_uri()) if asked else ""
+        self._no_simulator = graph.no_simulator() if asked else ""
 
     def show(self, state: PageState) -> None:
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
