@@ -1,8 +1,6 @@
 """Names, namespaces and parameters of the nodes in the launch files, for one robot and for many; nothing is started."""
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -234,13 +232,3 @@ def without_a_model_in_the_environment(monkeypatch):
 def test_parameters_of_an_earlier_launch_on_the_same_master_are_cleared():
     assert {"/robocop_sim", SERVER, BRIDGE} <= {name.rstrip("/") for name in Launch().cleared}
     assert {"/red" + SERVER, "/red" + BRIDGE} <= {name.rstrip("/") for name in Launch("robots:=red 0 0").cleared}
-
-
-def test_a_key_without_a_value_in_a_parameter_file_is_refused_with_file_and_key(tmp_path):
-    (tmp_path / "mine.yaml").write_text("position_tolerance: 0.2\ncontrol_rate:\n")
-    command = [sys.executable, str(LAUNCH / "robocop_launch.py"), str(LAUNCH / "robocop_goto_as.launch")]
-    ended = subprocess.run([*command, f"goto_config:={tmp_path}/mine.yaml"], stderr=subprocess.PIPE, text=True)
-    assert ended.returncode == 1
-    assert ended.stderr.strip() == (
-        f"[FATAL] PARAMETER: {tmp_path}/mine.yaml: control_rate has no value; remove the line for the default"
-    )
