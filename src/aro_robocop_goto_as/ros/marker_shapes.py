@@ -1,14 +1,14 @@
 """RViz markers -> shapes of the page's scene."""
 
 import math
-from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, Optional, Sequence, Tuple, Union
 
 from geometry_msgs.msg import Point, Quaternion, Vector3
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ..errors import FrameError
 from ..geometry import Pose3D, compose3
-from ..web.scene import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, PlacedVisual, Visual, color_of
+from ..web.scene import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Visual, color_of
 from .convert import from_quaternion
 
 KINDS = {
@@ -43,11 +43,6 @@ def to_shape(marker: Marker) -> Optional[Visual]:
     if (kind == MESH and (not points or len(points) % 3)) or (kind == LINE and len(points) < 2):
         return None
     return Visual(kind, size, *color_of(color), points, marker.text[:500])
-
-
-def obstacles(group: Group) -> List[PlacedVisual]:
-    """Those of the shapes that are the simulator's markers for obstacles, not for robots."""
-    return [placed for key, placed in group.items() if isinstance(key, tuple) and key[0] == "world"]
 
 
 class MarkerStore:

@@ -7,10 +7,8 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import rosgraph
 
-from ...errors import RobocopError
 from ...names import COMMAND_VARIABLE, SERVER, WEB, robocop
 from ...param_loading import from_dict
-from ...probes import x_display
 from ...simulation.params import SimParams
 from ...web.access import default_host, is_loopback, url
 from ...web.params import WebParams
@@ -28,8 +26,6 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
     The nodes' messages are shown on the screen or go to files in `logs`.
     """
     nodes = {node.name for node in running}
-    if "rviz" in nodes and not x_display.answers():  # its node has said so, and waits
-        nodes.remove("rviz")
     given = simulator or {}
     rows = [] if simulator is None else [*_simulated(given)]
     robots = sorted({node.namespace.strip("/") for node in running if node.name == SERVER} - {""})
@@ -90,11 +86,8 @@ def _page(arguments: str) -> str:
 
 
 def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:
-    """World and robots; nothing where the simulator refuses its parameters and says why."""
-    try:
-        p = from_dict(SimParams, given, "the simulator's parameters")
-    except RobocopError:
-        return []
+    """World, robots, and whether transforms are lacking."""
+    p = from_dict(SimParams, given, "the simulator's parameters")
     world = p.world.world
     if p.world.moving:
         world += ", moving:=true; obstacles may move into the robot's way, moving:=false stops them"
