@@ -18,7 +18,7 @@ FIRST = "action_server"  # the check without which no other one of a server is r
 ALIVE = "stays_alive"
 NOT_STARTED = "the server did not start"
 NOT_JUDGED = "the grader failed when it judged this"
-PROGRAMS = "in a grading, the programs that a node starts find no ROS master; rospy can do the same in the node itself"
+PROGRAMS = "in a grading, the processes that a node starts find no ROS master; use rospy in the node itself"
 TRUTH = "; the position comes from /odom, as on a real robot"
 
 Records = Mapping[str, Mapping[str, Record]]  # part -> scenario -> record
