@@ -717,26 +717,3 @@ ROWS = {
     ("turns_to_goal", Kind.NOT_REACHED, "reaches_goal"): "exception_while_driving",
     ("reaches_goal", Kind.NOT_REACHED, "stays_alive"): "exits_with_result",
 }
-
-# Solutions that get full marks, and advice with these words.
-ADVISED = (
-    _bridge(
-        "bridge_pending_is_stopped",
-        "reports_status",
-        "its reports stop while a goal is PENDING",
-        (TIMER, "        self.timer = None\n"),
-        ("        if self.sent:\n", "        if self.timer:\n            self.timer.shutdown()\n"),
-        ("        self.sent = True\n", "        self.timer = rospy.Timer(rospy.Duration(0.1), self.report_cb)\n"),
-        (
-            "        rospy.loginfo('server",
-            "        if self.client.get_state() != GoalStatus.ACTIVE:\n            self.timer.shutdown()\n"
-            "            self.timer = None\n            return\n        rospy.loginfo('server",
-        ),
-    ),
-    _bridge(
-        "bridge_pending_is_not_cancelled",
-        "cancels_older",
-        "it does not cancel an older goal that is PENDING",
-        ("if self.sent:", "if self.client.get_state() == GoalStatus.ACTIVE:"),
-    ),
-)

@@ -7,7 +7,7 @@ from typing import List, Mapping, Optional, Sequence
 from ..handout import ACTION, Limits
 from ..record import PREEMPTED, RECALLED, Click, Record, SentGoal
 from . import bridge_causes as causes
-from .bridge_reports import is_silent, wrong_reports
+from .bridge_reports import wrong_reports
 from .node_lifetime import no_exception, stays_alive
 from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
@@ -167,17 +167,3 @@ def goal_frame(record: Record, limits: Limits) -> Verdict:
             wanted = f"x {click.odom_x:.2f} y {click.odom_y:.2f} in odom"
             return Failed(wanted, f"x {goal.x:.2f} y {goal.y:.2f}", goal.time, cause, Kind.OTHER_POSITION)
     return PASSED
-
-
-def about_pending(records: Mapping[str, Record], limits: Limits) -> List[str]:
-    """Advice for a bridge that works with goals that are accepted at once, but not with PENDING goals."""
-    record, found = records.get("pending"), []
-    if record is None or any(_crash(it, limits) for it in records.values()):
-        return []
-    if "click" in records and reports_status(records["click"], limits) is PASSED and "watched" in record.marks:
-        found += [causes.REPORTS_STOP] if is_silent(record, limits) else []
-    if "replace" in records and cancels_older(records["replace"], limits) is PASSED:
-        verdict = cancels_older(record, limits)
-        if isinstance(verdict, Failed) and verdict.kind is Kind.NOT_CANCELLED:
-            found.append(causes.NO_OLDER_GOAL_SEEN)
-    return found

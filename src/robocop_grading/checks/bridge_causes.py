@@ -35,14 +35,6 @@ OTHER_POSITION = (
 )
 FROM_HEADER = "take its frame from header.frame_id"
 OWN_SERVER = "The bridge has an action server robocop_goto_as of its own, so its client never waits for the real one"
-REPORTS_STOP = (
-    "its reports stop while a goal is PENDING, which means that the server has not accepted it yet; with a server that "
-    "takes longer for that than the handout's, it reports nothing"
-)
-NO_OLDER_GOAL_SEEN = (
-    "it does not cancel an older goal that is PENDING, which means that the server has not accepted it yet, and may do "
-    "so later"
-)
 
 
 def distance(goal: SentGoal, x: float, y: float) -> float:

@@ -9,7 +9,6 @@ from grading_records import LIMITS
 from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 from robocop_grading import record as rec
 from robocop_grading.checks import CHECKS, PASSED, Failed
-from robocop_grading.checks.bridge import about_pending
 from robocop_grading.record import Record
 
 SAME_WORDS = "do not tell a goal that is active from one that has succeeded, was aborted or was preempted"
@@ -318,19 +317,3 @@ def test_cause_of_an_older_goal_that_is_not_replaced_is_named(record, words):
 
 def test_older_goal_that_is_cancelled_passes_wherever_the_goals_are():
     assert CHECKS["cancels_older"](replace(_replaced(), clicks=(replace(BEFORE, x=9.0), NEWER)), LIMITS) is PASSED
-
-
-def test_bridge_that_takes_pending_for_the_end_is_advised():
-    click = _reported("state: ACTIVE", "state: SUCCEEDED")
-    records = {"click": click, "replace": _replaced(rec.Cancel(5.0, "older"))}
-    once = (rec.Line(2.0, "stops at PENDING"),)
-    pending = replace(_replaced(preempted=""), name="pending", marks={"watching": 1.0, "watched": 13.0}, lines=once)
-    right = replace(records["replace"], marks=pending.marks, lines=(rec.Line(2.0, "x"), rec.Line(12.0, "x")))
-    stops, sees_none = about_pending({**records, "pending": pending}, LIMITS)
-    assert stops.startswith("its reports stop while a goal is PENDING")
-    assert sees_none.startswith("it does not cancel an older goal that is PENDING")
-    assert about_pending({**records, "pending": right}, LIMITS) == []
-    failed = {"click": _reported("PENDING", ""), "replace": _replaced(preempted=""), "pending": pending}
-    died = replace(records["replace"], node_ends=(rec.NodeEnd(6.0, 0),))
-    assert about_pending({**records, "replace": died, "pending": pending}, LIMITS) == []
-    assert about_pending(failed, LIMITS) == []  # it loses points for what it does with all goals
