@@ -365,16 +365,6 @@ WRONG = (
         (POSITION, "goal.position.x, goal.position.y = round(pose.pose.position.x, 1), round(pose.pose.position.y, 1)"),
     ),
     _bridge(
-        "bridge_transforms_from_map",
-        "forwards_goal",
-        "The click in odom is transformed as if it were in map",
-        (
-            "        msg.header.stamp = rospy.Time(0)\n",
-            "        msg.header.stamp, msg.header.frame_id = rospy.Time(0), 'map'\n",
-        ),
-        alone=True,
-    ),
-    _bridge(
         "bridge_gives_up",
         "forwards_goal",
         "without a timeout",
@@ -412,7 +402,7 @@ WRONG = (
     _server(
         "minimum_never_reset",
         "next_goal",
-        "although nothing is in the way any more",
+        "although nothing is in the way",
         (AHEAD, f"min(self.min_dist_ahead, {AHEAD})"),
         alone=True,
     ),
@@ -437,15 +427,6 @@ WRONG = (
         "/move_base_simple/goal is used with the wrong type, geometry_msgs/Pose; its type is geometry_msgs/PoseStamped",
         ("import PoseStamped", "import Pose, PoseStamped"),
         ("'/move_base_simple/goal', PoseStamped", "'/move_base_simple/goal', Pose"),
-        alone=True,
-    ),
-    _bridge(
-        "bridge_cancels_an_unknown_id",
-        "cancels_older",
-        'The cancel request is for a goal with the id "goal_1", but the older goal\'s id is',
-        ("import GoalStatus", "import GoalID, GoalStatus"),
-        ("        self.sent = False\n", f"        self.sent = False\n{CANCEL_TOPIC}"),
-        ("self.client.cancel_goal()", "self.cancel_pub.publish(GoalID(id='goal_1'))"),
         alone=True,
     ),
     _bridge(
@@ -547,14 +528,6 @@ WRONG = (
         "bridge_alive",
         "only after: import tf2_geometry_msgs",
         ("import tf2_geometry_msgs\n", ""),
-        alone=True,
-    ),
-    _bridge(
-        "bridge_unsubscribes",
-        "forwards_goal",
-        "After its first goal the bridge sent no other click",
-        ("        rospy.Subscriber(", "        self.clicks = rospy.Subscriber("),
-        ("        self.sent = True\n", "        self.clicks.unregister()\n"),
         alone=True,
     ),
     _server(
