@@ -4,7 +4,6 @@ from dataclasses import replace
 from typing import List, Mapping, Sequence
 
 from .checks import CHECKS, Failed, NotReached, Passed, Verdict
-from .checks.bridge import about_pending
 from .checks.topic_use import wrong_type
 from .checks.verdict import Kind
 from .faults import Faults
@@ -18,7 +17,7 @@ FIRST = "action_server"  # the check without which no other one of a server is r
 ALIVE = "stays_alive"
 NOT_STARTED = "the server did not start"
 NOT_JUDGED = "the grader failed when it judged this"
-PROGRAMS = "in a grading, the programs that a node starts find no ROS master; rospy can do the same in the node itself"
+PROGRAMS = "in a grading, the processes that a node starts find no ROS master; use rospy in the node itself"
 TRUTH = "; the position comes from /odom, as on a real robot"
 
 Records = Mapping[str, Mapping[str, Record]]  # part -> scenario -> record
@@ -46,7 +45,7 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
 
 def _notes(records: Mapping[str, Record], plan: Plan, checks: Sequence[CheckResult]) -> List[str]:
     """What to say about a part besides its checks."""
-    said = [*about_pending(records, plan.limits), *_programs(records)]
+    said = _programs(records)
     if any(check.outcome is not CheckOutcome.PASSED for check in checks):
         said += [*_unpublished(records), *_wrong_types(records, checks)]
     return said

@@ -17,7 +17,7 @@ from aro_robocop_goto_as.shapes import Box, Cylinder
 
 HEIGHT = 0.5  # [m] of obstacles, well above the lidar
 START = "start"  # the recording of the node's start; every server has one
-BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame", "pending")  # of session/bridge_run.py
+BRIDGE_SCENARIOS = ("no_server", "click", "replace", "frame")  # of session/bridge_run.py
 MIDDLE = 0  # the seed with which every range stands for its middle
 MAX_SEED = 999_999
 DIGITS = 3  # of a drawn number after the point: [mm], [mrad], [ms]

@@ -295,7 +295,7 @@ WRONG = (
     _server(
         "minimum_never_reset",
         "next_goal",
-        "although nothing is in the way any more",
+        "although nothing is in the way",
         (AHEAD, f"min(self.min_dist_ahead, {AHEAD})"),
         alone=True,
     ),
@@ -371,14 +371,6 @@ WRONG = (
         "bridge_alive",
         "only after: import tf2_geometry_msgs",
         ("import tf2_geometry_msgs\n", ""),
-        alone=True,
-    ),
-    _bridge(
-        "bridge_unsubscribes",
-        "forwards_goal",
-        "After its first goal the bridge sent no other click",
-        ("        rospy.Subscriber(", "        self.clicks = rospy.Subscriber("),
-        ("        self.sent = True\n", "        self.clicks.unregister()\n"),
         alone=True,
     ),
     _server(
@@ -520,20 +512,3 @@ ROWS = {
     ("turns_to_goal", Kind.NOT_REACHED, "reaches_goal"): "exception_while_driving",
     ("reaches_goal", Kind.NOT_REACHED, "stays_alive"): "exits_with_result",
 }
-
-# Solutions that get full marks, and advice with these words.
-ADVISED = (
-    _bridge(
-        "bridge_pending_is_stopped",
-        "reports_status",
-        "its reports stop while a goal is PENDING",
-        (TIMER, "        self.timer = None\n"),
-        ("        if self.sent:\n", "        if self.timer:\n            self.timer.shutdown()\n"),
-        ("        self.sent = True\n", "        self.timer = rospy.Timer(rospy.Duration(0.1), self.report_cb)\n"),
-        (
-            "        rospy.loginfo('server",
-            "        if self.client.get_state() != GoalStatus.ACTIVE:\n            self.timer.shutdown()\n"
-            "            self.timer = None\n            return\n        rospy.loginfo('server",
-        ),
-    ),
-)

@@ -2,12 +2,9 @@
 
 import math
 import re
-from typing import Dict, Sequence
-
-from aro_robocop_goto_as.geometry import Pose2D, compose, inverse
 
 from ..handout import ACTION, CLICK_TOPIC
-from ..record import Cancel, Click, Record, SentGoal
+from ..record import Click, Record, SentGoal
 from .node_lifetime import closest
 from .output import logged
 from .topic_use import wrong_type
@@ -16,10 +13,14 @@ POSITION_TOLERANCE = 0.02  # [m] of a goal that needs no transform
 FRAME_TOLERANCE = 0.1  # [m] of a transformed goal: the robot moves between two odometry messages
 TOO_EARLY = re.compile("extrapolation.{1,40}into the future")  # in tf2's words
 ACTION_TOPICS = tuple(f"{ACTION}/{topic}" for topic in ("goal", "status", "result", "feedback"))
-MAX_ID = 80  # characters that are shown of a goal's id
 NOTHING_SENT = (
     "No goal was sent: does the callback call send_goal()? Does a bridge that is started before the server wait for "
     "it, with wait_for_server() without a timeout?"
+)
+NOT_CANCELLED = (
+    "The older goal is not cancelled: is cancel_goal() or cancel_all_goals() called before the newer goal is sent, and "
+    "cancel_goal() on the client that has sent the older one? send_goal() alone does not cancel, and a new client does "
+    "not know the goals of others"
 )
 NEWER_CANCELLED = "The newer goal is cancelled, too"
 UNASKED_GOAL = "The bridge sends a goal without a click"
@@ -28,21 +29,15 @@ OLDER_POSITION = (
     "The newer goal has the position of the older click: fill the goal from the message that has just come, then "
     "send it"
 )
-NOT_FORWARDED = "The click was not forwarded"
+NOT_FORWARDED = (
+    "The click was not forwarded: does the subscriber or its callback end, or is a flag never cleared that says that a "
+    "goal has been sent?"
+)
 OTHER_POSITION = (
-    "The goal does not have the click's position in odom: goal.position is msg.pose.position, transformed to odom if "
-    "it is in another frame"
+    "The goal does not have the click's position in odom: goal.position is msg.pose.position, transformed to odom from "
+    "the frame in header.frame_id"
 )
-FROM_HEADER = "take its frame from header.frame_id"
 OWN_SERVER = "The bridge has an action server robocop_goto_as of its own, so its client never waits for the real one"
-REPORTS_STOP = (
-    "its reports stop while a goal is PENDING, which means that the server has not accepted it yet; with a server that "
-    "takes longer for that than the handout's, it reports nothing"
-)
-NO_OLDER_GOAL_SEEN = (
-    "it does not cancel an older goal that is PENDING, which means that the server has not accepted it yet, and may do "
-    "so later"
-)
 
 
 def distance(goal: SentGoal, x: float, y: float) -> float:
@@ -79,27 +74,13 @@ def unconnected(record: Record) -> str:
     return f"The action client looks for {closest(name, others) or others[0]}; the handout says {name}"
 
 
-def not_cancelled(requests: Sequence[Cancel], older: SentGoal) -> str:
-    """Why the older goal is not cancelled."""
-    if not requests:
-        return (
-            "No cancel request was sent: is cancel_goal() or cancel_all_goals() called before the newer goal is sent, "
-            "and cancel_goal() on the client that has sent the older one? send_goal() alone does not cancel, and a new "
-            "client does not know the goals of others"
-        )
-    return (
-        f'The cancel request is for a goal with the id "{requests[-1].id[:MAX_ID]}", but the older goal\'s id is '
-        f'"{older.id[:MAX_ID]}": cancel_goal() of the client that has sent it knows the id'
-    )
-
-
 def looks_up_too_early(record: Record) -> bool:
     """Return whether tf2 refused a transform because the newest transform was older than the requested time."""
     return logged(record, TOO_EARLY)
 
 
 def other_position(record: Record, click: Click, goal: SentGoal) -> str:
-    """Why a goal is elsewhere than its click: the position of an older click, or a frame taken for another one."""
+    """Why a goal is elsewhere than its click: the position of an older click, or coordinates of another frame."""
     older = [it for it in record.clicks if it.time < click.time and it.frame == "odom"]
     if any(distance(goal, it.x, it.y) <= POSITION_TOLERANCE for it in older):
         return OLDER_POSITION
@@ -108,17 +89,4 @@ def other_position(record: Record, click: Click, goal: SentGoal) -> str:
             f"Coordinates in {click.frame} were passed on as if they were in odom: use tf2 to transform them from "
             "header.frame_id to odom"
         )
-    for frame, odom_from_frame in _frames(record, click.time).items():
-        point = compose(odom_from_frame, Pose2D(click.x, click.y))
-        if frame != click.frame and distance(goal, point.x, point.y) <= FRAME_TOLERANCE:
-            return f"The click in {click.frame} is transformed as if it were in {frame}: {FROM_HEADER}"
     return OTHER_POSITION
-
-
-def _frames(record: Record, time: float) -> Dict[str, Pose2D]:
-    """By frame, odom_from_frame at a time [s]; map is the world."""
-    now = max((it for it in record.samples if it.time <= time + 1e-6), key=lambda it: it.time, default=None)
-    if now is None:
-        return {}
-    robot, in_world = Pose2D(now.x, now.y, now.yaw), Pose2D(now.world_x, now.world_y, now.world_yaw)
-    return {"base_footprint": robot, "map": compose(robot, inverse(in_world))}

@@ -44,12 +44,6 @@ def _between(record: Record, start: float, end: float) -> List[Line]:
     return [line for line in record.lines if start < line.time < end]
 
 
-def is_silent(record: Record, limits: Limits) -> bool:
-    """Return whether nothing is said any more at the end of the time in which reports are watched."""
-    watched = record.marks["watched"]
-    return all(map(_says_nothing, _between(record, watched - limits.status_period - 0.5, watched)))
-
-
 def _grouped(lines: Sequence[Line]) -> List[List[Line]]:
     """The lines of each report."""
     reports: List[List[Line]] = []

@@ -7,7 +7,7 @@ from typing import Callable, Optional
 from ..handout import GOAL_RADIUS, STOP_DISTANCE, Limits
 from ..record import ABORTED, AT_END, PREEMPTED, SUCCEEDED, TERMINAL, Record, Result, SentGoal, status_name
 from ..texts import sentences
-from .output import NO_STATE_LOGGED, TWO_STATES_LOGGED, logged_cause, no_state
+from .output import NO_STATE, NO_STATE_LOGGED, TWO_STATES_LOGGED, logged_cause
 from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check, kind_of_wrong_state
 
@@ -109,16 +109,9 @@ def _wrong_state(record: Record, goal: SentGoal, status: int, wanted: int) -> st
     if wanted == ABORTED and status == SUCCEEDED:
         return "set_succeeded is called although the goal failed: call set_aborted"
     if wanted == SUCCEEDED and status == ABORTED:
-        if not record.obstacles:
-            return (
-                "set_aborted is called although there is no obstacle at all: does the server have a timeout of "
-                "its own, or is a range of inf treated as an obstacle?"
-            )
-        if any(result.time < goal.time and result.status == ABORTED for result in record.results):
-            return "set_aborted is called although nothing is in the way any more"
         return (
-            "set_aborted is called although nothing is in the way: which beams count as ahead, or does the server"
-            " have a timeout of its own?"
+            "set_aborted is called although nothing is in the way: do beams count that are not ahead, is a range of "
+            "inf or an earlier scan treated as an obstacle, or does the server have a timeout of its own?"
         )
     if wanted == PREEMPTED:
         return "Call set_preempted for a goal that is cancelled or replaced"
@@ -246,7 +239,7 @@ def one_ending(record: Record, limits: Limits) -> Verdict:
             kind = Kind.TWO_STATES if state in TERMINAL else Kind.NOT_ACCEPTED
             return Failed("one terminal state", line.text[:160], line.time, cause, kind)
         if NO_STATE_LOGGED.search(line.text):
-            return Failed("a terminal state", "none was set", line.time, no_state(record, line.time))
+            return Failed("a terminal state", "none was set", line.time, NO_STATE)
     for goal in record.goals:
         changes = [change for change in record.statuses if change.id == goal.id and change.status in TERMINAL]
         if len({change.status for change in changes}) > 1:

@@ -20,7 +20,6 @@ ABORTED_FAR = (
     f"The goal was aborted farther than {STOP_DISTANCE:g} m from the obstacle: is the threshold wrong, do beams "
     "count that are not ahead, or does something else abort the goal?"
 )
-ABORTED_LATER = "and the goal was aborted only when it had moved away again: abort it at once"
 ABORTED_NEAR = (
     f"The goal was aborted nearer than {STOP_DISTANCE:g} m to the obstacle: is the threshold wrong, is the "
     "newest scan used in each iteration, and are the beams that count those ahead?"
@@ -66,12 +65,7 @@ def _wrong_abort(record: Record, goal: SentGoal, limits: Limits) -> Optional[Fai
         return Failed(wanted, "an exception", end, logged_cause(record, end), Kind.EXCEPTION, goal)
     clearances = [sample.ahead for sample in record.samples_between(end - AT_END, end)]
     if clearances and min(clearances) > limits.abort_farthest:
-        nearest = min(sample.ahead for sample in record.samples_between(goal.time, end))
-        seen = f"an abort at {min(clearances):.2f} m"
-        if nearest > limits.abort_farthest:
-            return Failed(wanted, seen, end, ABORTED_FAR, Kind.TOO_EARLY, goal)
-        cause = f"The robot came as near as {nearest:.2f} m to the obstacle, {ABORTED_LATER}"
-        return Failed(wanted, seen, end, cause, goal=goal)
+        return Failed(wanted, f"an abort at {min(clearances):.2f} m", end, ABORTED_FAR, Kind.TOO_EARLY, goal)
     if clearances and clearances[-1] < limits.abort_nearest:
         cause = narrow_obstacle(record) or _late_cause(record, goal, end, clearances[-1])
         return Failed(wanted, f"an abort at {clearances[-1]:.2f} m", end, cause, Kind.TOO_NEAR)

@@ -5,7 +5,6 @@ import os
 import re
 from typing import Iterator, Pattern, Sequence
 
-from ..handout import GOAL_RADIUS, STOP_DISTANCE
 from ..record import Record
 from ..texts import sentences
 
@@ -36,8 +35,6 @@ INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins 
 UNKNOWN_TYPE = re.compile("Type .{1,100} if not loaded or supported")  # in tf2's words
 NOT_IMPORTED = "tf2 can transform messages of geometry_msgs only after: import tf2_geometry_msgs"
 NO_STATE = "execute_cb returned without calling set_succeeded, set_aborted or set_preempted"
-ROS_ARGUMENT = re.compile("unrecognized arguments: .*:=")  # in argparse's words
-MYARGV = "roslaunch adds such arguments for rospy: parse rospy.myargv()[1:], which leaves them out"
 JUST_BEFORE = 1.0  # [s] before a goal's end, in which an exception can be its cause
 DELAY = 0.25  # [s] after which a line has been read
 TRACEBACK = 40  # lines: longer ones are cut
@@ -52,22 +49,7 @@ def logged_cause(record: Record, end: float) -> str:
     """What the log says about why a goal ended wrongly at a time [s]; empty if it says nothing."""
     if any(logged(record, pattern, end, end - JUST_BEFORE) for pattern in (UNCAUGHT, TRACEBACK_LOGGED)):
         return f"An exception was raised: {last_error(record, end)}"
-    return no_state(record, end) if logged(record, NO_STATE_LOGGED, end) else ""
-
-
-def no_state(record: Record, end: float) -> str:
-    """A sentence about the goal that ended without a terminal state at about a time [s], and on which path."""
-    goal = min(record.goals, key=lambda it: abs(record.active_until(it) - end), default=None)
-    near = min(record.samples, key=lambda it: abs(it.time - end), default=None)
-    if goal is None or near is None:
-        return NO_STATE
-    paths = {
-        "when the goal was cancelled": any(goal.time < it.time <= end for it in record.cancels),
-        "when a newer goal came": any(goal.time < it.time <= end for it in record.goals),
-        "when the goal was reached": goal.errors_at(near)[0] < GOAL_RADIUS,
-        "when an obstacle was ahead": near.ahead < STOP_DISTANCE,
-    }
-    return ", ".join([NO_STATE, *[path for path, was_taken in paths.items() if was_taken][:1]])
+    return NO_STATE if logged(record, NO_STATE_LOGGED, end) else ""
 
 
 def last_error(record: Record, until: float = math.inf) -> str:
@@ -94,8 +76,6 @@ def last_error(record: Record, until: float = math.inf) -> str:
     others = [line for line in lines if not INFORMATION.match(line)]
     if not others:
         return "its output names no error"
-    if ROS_ARGUMENT.search(others[-1]):
-        return sentences(others[-1][:200], MYARGV)
     return others[-1][:200] if PROBLEM.match(others[-1]) else f"it had printed: {others[-1][:200]}"
 
 

@@ -48,15 +48,10 @@ FRAMES = ("base_footprint", "map")
 
 
 class BridgeRun(Run):
-    """One submission's bridge.
-
-    The bridge's goals are accepted at once, as the handout's server does. In the last scenario, which gives no
-    points, the goals stay PENDING: how long a goal stays PENDING depends on the real server.
-    """
+    """One submission's bridge, whose goals are accepted at once, as the handout's server does."""
 
     def __init__(self, job: Job, stage: Stage) -> None:
         super().__init__(job, stage)
-        self.accepts = True
         self.topics.subscribe(f"{ACTION}/cancel", GoalID, self._on_cancel)
         self.topics.advertise(CLICK_TOPIC, PoseStamped)
         self.server: Optional[Goals] = None
@@ -88,7 +83,7 @@ class BridgeRun(Run):
         state = self.server.add(message)
         if state is not None:
             self.add("statuses", rec.Status(self.stage.now, name, state))
-        if state == rec.PENDING and self.accepts:
+        if state == rec.PENDING:
             self.server.accept(name)
             self.add("statuses", rec.Status(self.stage.now, name, rec.ACTIVE))
 
@@ -237,18 +232,6 @@ class BridgeRun(Run):
             self._finish_goals()
             self.settle(0.5)
         self.finish("frame")
-
-    def _pending(self) -> None:
-        """Send two clicks whose goals are not accepted yet; for advice, without points."""
-        self._finish_goals()
-        self.accepts = False
-        self._begin("pending")
-        self._send_click("odom", *BEFORE)
-        self._watch_reports(self.plan.limits.status_period + 2.0)
-        self._stop_watching()
-        self._send_click("odom", *SECOND)
-        self.settle(2.0)
-        self.finish("pending")
 
 
 def _text(text: str, message: Any) -> str:

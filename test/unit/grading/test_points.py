@@ -113,7 +113,7 @@ def test_progress_counts_the_scenarios_of_the_parts_that_are_graded(capsys):
     servers, bridges = len(PLAN.scenarios) + 1, len(BRIDGE_SCENARIOS)
     both = servers + bridges
     assert told(PLAN, "server", "bridge") == (
-        f"{servers}/{both} server: {PLAN.scenarios[-1].name}\n{both}/{both} bridge: pending\n"
+        f"{servers}/{both} server: {PLAN.scenarios[-1].name}\n{both}/{both} bridge: frame\n"
     )
-    assert told(PLAN, "bridge") == f"{bridges}/{bridges} bridge: pending\n"
+    assert told(PLAN, "bridge") == f"{bridges}/{bridges} bridge: frame\n"
     assert told(PLAN.restricted(["waits_for_server"]), "bridge") == "2/2 bridge: click\n"
