@@ -66,44 +66,43 @@ def contents(package):
     return {path: (path.read_bytes(), path.stat().st_mode) for path in package.rglob("*") if path.is_file()}
 
 
-@pytest.fixture
-def hosted(tmp_path):
-    """Start a package that somebody has made with `robocop new` and filled in."""
-    package, started = tmp_path / "as_taught", []
+def as_taught(folder):
+    """A package that somebody has made with `robocop new` and filled in."""
+    package = folder / "as_taught"
     new.make(package)
     for script, solution in (("robocop_goto_as.py", "base_server"), ("robocop_rviz_goto_ac.py", "base_bridge")):
         (package / "scripts" / script).write_text((SOLUTIONS / f"{solution}.py.in").read_text())
     for file, change in CHANGES.items():
         (package / file).write_text((package / file).read_text().replace(*change))
+    return package
+
+
+def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gazebos_services(tmp_path):
+    package = as_taught(tmp_path)
     before = contents(package)
-
-    def start(*arguments):
-        started.append(Hosted(package, tmp_path, *arguments))
-        return started[-1]
-
-    yield start
-    for system in started:
-        if system.process.poll() is None:
-            assert system.end() == []
-        system.end_all()
+    with Hosted(package, tmp_path) as system:
+        system.wait_until(lambda: "server: " in system.output, "its bridge talks to its server")
+        done = system.call("rosrun", "aro_robocop_goto_as", "robocop_goto.py", "0.3", "0.3")
+        assert (done.returncode, "SUCCEEDED: finished successfully" in done.stdout) == (0, True), (
+            done.stdout + system.output
+        )
+        assert "PARAMETERS" not in system.output
+        assert "world         empty\nrobot         burger\ntransforms    none from odom to the robot" in system.output
+        state, share = places()
+        types = compat_folder(share, state) / "devel" / "lib" / "python3" / "dist-packages"
+        output = system.call(
+            sys.executable, str(NODES / "gazebo_calls.py"), PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}"
+        ).stdout
+        assert system.end() == []
+    expect_gazebos_answers(json.loads(output.splitlines()[-1]))
+    with Hosted(package, tmp_path, "scan_profile:=no_such") as refused:
+        assert refused.process.wait(DEADLINE) == 1, refused.output
+        assert "scan_profile" in refused.output and refused.processes() == []
     assert contents(package) == before, "its author's files were changed"
 
 
-def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gazebos_services(hosted):
-    system = hosted()
-    system.wait_until(lambda: "server: " in system.output, "its bridge talks to its server")
-    done = system.call("rosrun", "aro_robocop_goto_as", "robocop_goto.py", "0.3", "0.3")
-    assert (done.returncode, "SUCCEEDED: finished successfully" in done.stdout) == (0, True), (
-        done.stdout + system.output
-    )
-    assert "PARAMETERS" not in system.output
-    assert "world         empty\nrobot         burger\ntransforms    none from odom to the robot" in system.output
-    state, share = places()
-    types = compat_folder(share, state) / "devel" / "lib" / "python3" / "dist-packages"
-    output = system.call(
-        sys.executable, str(NODES / "gazebo_calls.py"), PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}"
-    ).stdout
-    answers = json.loads(output.splitlines()[-1])
+def expect_gazebos_answers(answers):
+    """The answers to gazebo_calls.py are those of Gazebo."""
     assert answers.pop("models") == ["ground_plane", "turtlebot3_burger"]
     absent = "model [table] does not exist; there are: ground_plane, turtlebot3_burger"
     assert answers.pop("unknown")[3].startswith(absent) and answers.pop("unknown set") == absent
@@ -130,12 +129,6 @@ def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gaze
         "moved by itself": True,
         "time": True,
     }
-
-
-def test_exit_status_is_1_when_the_simulator_refuses_its_arguments(hosted):
-    system = hosted("scan_profile:=no_such")
-    assert system.process.wait(DEADLINE) == 1, system.output
-    assert "scan_profile" in system.output and system.processes() == []
 
 
 MANIFEST = """<package format="2"><name>{}</name><version>0.0.1</version><description>d</description>
