@@ -21,8 +21,7 @@ from ...sensors.bumper import Bumper
 from ...sensors.camera import Camera
 from ...sensors.ground_truth import GroundTruth
 from ...sensors.imu import FORCE, ORIENTATION, RATES, Imu, ImuParams
-from ...sensors.lidar import Lidar
-from ...sensors.lidar_profiles import LidarProfile
+from ...sensors.lidar import Lidar, LidarProfile
 from ...sensors.odometry import JointEncoders, WheelOdometry
 from ...sensors.sensor import Sensor
 from .. import convert
