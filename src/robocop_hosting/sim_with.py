@@ -12,10 +12,10 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from xml.sax.saxutils import quoteattr
 
 from aro_robocop_goto_as.errors import RobocopError
-from aro_robocop_goto_as.process import file_lock
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 from aro_robocop_goto_as.process.start import typed
 
+from . import file_lock
 from .errors import HostingError
 from .package import LaunchPlan, Package, arguments_of, find_package, read_launch_plan
 from .scratch import scratch_folder
