@@ -154,14 +154,14 @@ class Lidar(Sensor):
         super().__init__(context, self.profile.rate)
         self.ranges = np.zeros((len(context.fleet), self.profile.samples))
         self._beams = Beams(self.profile.angle_min, self.profile.increment, self.profile.samples)
-        self._mounts = tuple(model.base_from_scan for model in context.models)
+        self.mounts = tuple(model.base_from_scan for model in context.models)
         self._errors = RangeErrors(self.profile)
 
     def measurement_calls(self, robots: RobotIndices) -> MeasurementCalls:
         """Scan with these robots' lidars."""
-        cast = self._beams.casting(self.context.scenes.scene(self._mounts), robots, self.profile.range_max, self.ranges)
+        cast = self._beams.casting(self.context.scenes.scene(self.mounts), robots, self.profile.range_max, self.ranges)
         return MeasurementCalls([cast, self._errors.adding(robots, self.context.episode, self.ranges)])
 
     def exact_distances(self, robot: int) -> np.ndarray:
         """What a lidar would measure now without noise and range_min: (samples,) [m]; no return = +inf."""
-        return self._beams.scan(self.context.scenes.scene(self._mounts), [robot], self.profile.range_max)[0]
+        return self._beams.scan(self.context.scenes.scene(self.mounts), [robot], self.profile.range_max)[0]

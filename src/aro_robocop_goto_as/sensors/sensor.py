@@ -111,7 +111,7 @@ class Sensor:
     topic = ""  # in the robot's namespace; sensors are called by it
     always_on = False  # whether it measures also while nobody subscribes
     frame = ""  # of its own, if the robots' URDF has none for it
-    mounts: Mounts = ()  # base_from_sensor of each robot, where the sensor has a frame of its own
+    mounts: Mounts = ()  # base_from_sensor of each robot; on /tf_static if the sensor has a frame of its own
 
     def __init__(self, context: SensorContext, rate: int) -> None:
         """`rate` [Hz]; 0: never."""
