@@ -2,12 +2,14 @@
 
 import argparse
 import itertools
+import re
 
 import pytest
 from aro_robocop_goto_as.msg import GoToPositionFeedback
 from geometry_msgs.msg import Point
 from nav_msgs.msg import Odometry
 
+from aro_robocop_goto_as.cli.commands import HELP
 from aro_robocop_goto_as.ros.cli import goto
 from aro_robocop_goto_as.ros.cli.goto import NOT_REACHED, REACHED, parse
 
@@ -29,6 +31,13 @@ def test_only_a_missing_coordinate_is_called_missing(capsys):
     with pytest.raises(SystemExit):
         parse(["0.3"])
     assert "the following arguments are required: Y\n" in capsys.readouterr().err
+
+
+def test_each_option_is_in_the_help_that_needs_nothing_installed(capsys):
+    with pytest.raises(SystemExit):
+        parse(["--help"])
+    options = set(re.findall(r"--[a-z]+", capsys.readouterr().out)) - {"--help"}
+    assert options and options <= set(re.findall(r"--[a-z]+", HELP.read_text()))
 
 
 class Follower:
