@@ -12,7 +12,7 @@ from aro_robocop_goto_as.msg import GoToPositionFeedback
 from ...errors import FrameError
 from ...names import ACTION, BRIDGE, position_text
 from ..node_main import answer_help, load_params, node
-from .follower import Follower
+from .goal_follower import GoalFollower
 from .goal_frame import GoalTransformer
 from .params import BridgeParams
 
@@ -31,7 +31,7 @@ class Bridge:
         self.sending = threading.Lock()  # held while a goal is being sent: it is reported only afterwards
         self.last_status = ""
         self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout)
-        self.goal = Follower(ACTION, self.on_feedback)
+        self.goal = GoalFollower(ACTION, self.on_feedback)
         self.status = rospy.Publisher("~status", String, queue_size=1, latch=True)
         rospy.Subscriber("move_base_simple/goal", PoseStamped, self.on_click, queue_size=10)
         rospy.Timer(rospy.Duration.from_sec(p.status_period), self.publish_state, reset=True)

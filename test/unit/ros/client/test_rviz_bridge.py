@@ -29,7 +29,7 @@ class System:
             rospy, "Timer", lambda period, publish, **__: self.timers.append((period.to_sec(), publish))
         )
         monkeypatch.setattr(rviz_bridge, "POLL", 0.0)
-        monkeypatch.setattr(rviz_bridge, "Follower", self.follower)
+        monkeypatch.setattr(rviz_bridge, "GoalFollower", self.follower)
         transformer = SimpleNamespace(frame_of=lambda pose: "map", resolve=self.resolve)
         monkeypatch.setattr(rviz_bridge, "GoalTransformer", lambda *given: self.transforms.append(given) or transformer)
         self.bridge = rviz_bridge.Bridge(BridgeParams())
