@@ -59,7 +59,7 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
 def _command() -> str:
     """The command line of ./robocop in a second terminal, which may not know this one's master."""
     uri, command = rosgraph.get_master_uri(), robocop()
-    is_default = uri == rosgraph.rosenv.DEFAULT_MASTER_URI
+    is_default = uri.rstrip("/") == rosgraph.rosenv.DEFAULT_MASTER_URI.rstrip("/")
     is_known = is_default or COMMAND_VARIABLE in os.environ  # a container has one environment
     return command if is_known else f"ROS_MASTER_URI={uri} {command}"
 
