@@ -19,6 +19,7 @@ from robocop_grading.report.write import write
 
 PLAN_FILE = Path(ROOT, "config", "grading.yaml")
 PLAN = load(PLAN_FILE)
+CANCEL = next(check.points for check in PLAN.checks if check.name == "cancel")
 LIMITS = Limits()
 GOAL = rec.SentGoal("g", 1.0, 1.0, 0.0, "SUCCEEDED")
 

@@ -1,11 +1,12 @@
 """The plan and the seed of a class; who is graded again; what is told meanwhile."""
 
+import re
 import time
 from argparse import Namespace
 from pathlib import Path
 
 import pytest
-from grading_records import PLAN, PLAN_FILE, keep, keep_grade
+from grading_records import CANCEL, PLAN, PLAN_FILE, keep, keep_grade
 from support import ROOT
 
 from aro_robocop_goto_as.errors import RobocopError
@@ -46,7 +47,7 @@ def grade_class(folder, monkeypatch):
 def other_points(tmp_path):
     """The plan with 0.5 points for one check."""
     path = tmp_path / "my_plan.yaml"
-    path.write_text(PLAN_FILE.read_text().replace("cancel:            {points: 0.2", "cancel: {points: 0.5"))
+    path.write_text(re.sub(r"cancel: +{points: [\d.]+", "cancel: {points: 0.5", PLAN_FILE.read_text()))
     return path
 
 
@@ -64,14 +65,14 @@ def test_class_keeps_its_seed_and_its_plan(folder, grade_class, other_points):
     other_points.unlink()
     ran, again = grade_class(again=["anna"])
     assert (ran, again.plan.seed) == (["anna"], first.plan.seed)
-    assert again.plan.points == first.plan.points == PLAN.points + 0.3
+    assert again.plan.points == first.plan.points == pytest.approx(PLAN.points + 0.5 - CANCEL)
 
 
 def test_other_points_are_summed_anew_without_another_run(folder, grade_class, other_points, capsys):
     _, before = grade_class()
     ran, after = grade_class(plan=other_points)
-    assert not ran and after.done["anna"].points == before.done["anna"].points + 0.3 == 0.5
-    assert ",0.5,8.3," in (after.results.folder / "grades.csv").read_text(), "points, of"
+    assert not ran and (before.done["anna"].points, after.done["anna"].points) == (CANCEL, 0.5)
+    assert f",0.5,{after.plan.points}," in (after.results.folder / "grades.csv").read_text(), "points, of"
     assert "the table and the overview have the new ones, reports the old ones until --again" in capsys.readouterr().out
 
 
@@ -159,10 +160,11 @@ def test_class_says_how_fast_it_is_and_who_is_not_gradable_and_why(group, monkey
     monkeypatch.setattr(made, "_started", time.monotonic() - 60.0)
     keep(made.results, "carl.zip")
     line = made.add("carl.zip", "")
-    assert line == "[3/4] carl.zip: 0.2 of 0.2 points, 3 s; 1.0 a minute, about 2 min left"
+    assert line == f"[3/4] carl.zip: {CANCEL:g} of {CANCEL:g} points, 3 s; 1.0 a minute, about 2 min left"
     assert made.add("řehoř", "no grade: the machine had no time") == "řehoř: no grade: the machine had no time"
     lines = made.summary_lines()
-    assert lines[:2] == ["2 judged, 2 not gradable", "mean 0.20, median 0.2 of 8 points"]
+    averages = f"mean {CANCEL:.2f}, median {CANCEL:g} of {PLAN.points:g} points"
+    assert lines[:2] == ["2 judged, 2 not gradable", averages]
     assert lines[-2:] == [
         "not gradable: ben: ben.rar: a .rar file",
         "not gradable: řehoř: no grade: the machine had no time",

@@ -4,7 +4,7 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from grading_records import PLAN, keep
+from grading_records import CANCEL, PLAN, keep
 
 from aro_robocop_goto_as.errors import ParameterError
 from robocop_grading.classroom.results import Results
@@ -16,7 +16,7 @@ def test_stored_result_is_valid_until_hand_in_or_plan_change(tmp_path):
     assert not results.has(*hand_in)
     keep(results, "anna")
     assert results.has(*hand_in)
-    assert results.read("anna").points == 0.2
+    assert results.read("anna").points == CANCEL
     assert not results.has("anna", "another")
     assert not Results(tmp_path, replace(PLAN, seed=1)).has(*hand_in)
     assert not Results(tmp_path, PLAN, "another version").has(*hand_in)

@@ -24,7 +24,7 @@ def test_table_has_one_row_per_hand_in_and_no_spreadsheet_formulas():
     columns = {key: [row[key] for row in rows] for key in rows[0]}
     assert columns["name"] == ["'=anna", "ben", "carl", "dora"]
     assert columns["points"] == ["0.5", "0.0", "", ""] and columns["extra"] == ["1.0", "0.0", "", ""]
-    assert columns["of"] == ["8.0"] * 4
+    assert columns["of"] == [str(PLAN.points)] * 4
     assert columns["server"] == ["0.5", "0.0", "", ""]
     assert columns["bridge"] == ["0.0", "not handed in", "", ""], "without the extra point"
     assert columns["cancel"] == ["failed", "failed", "", ""]
