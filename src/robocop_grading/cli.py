@@ -159,7 +159,7 @@ def main() -> None:
         ignore_all()
         sys.exit(INTERRUPTED)
     except Exception as error:  # the grader failed on this submission
-        shown = printable_lines(repr(error))[:MAX_ERROR] + faults.changed_sources()
+        shown = printable_lines(repr(error))[:MAX_ERROR]
         print(f"robocop grade: could not be graded: {shown}", file=sys.stderr)
         with contextlib.suppress(OSError, RobocopError):  # the disk may be full
             print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)

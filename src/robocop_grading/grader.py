@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Mapping
 
-from aro_robocop_goto_as.suggestions import did_you_mean
 from robocop_hosting.tree import temporary_folder
 
 from . import judge
@@ -18,14 +17,8 @@ from .runner import Runner
 from .submission import Submission
 
 NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that they need"
-MISSING = "Python's module {} is not installed here{}"
+MISSING = "Python's module {} is not installed here; if the lab has it, name its package in the plan, under packages"
 BESIDE = "{0} lies beside {1}, but only {1} was given: grade the folder"
-NAME_IT = "; if the lab has it, name its package in the plan, under packages"
-LAB_MODULES = (
-    "actionlib actionlib_msgs angles aro_robocop_goto_as geometry_msgs laser_geometry nav_msgs numpy ros_numpy rospy "
-    "sensor_msgs std_msgs tf tf2_geometry_msgs tf2_ros tf_conversions"
-).split()
-MISTYPED = 0.75  # similarity to a module of the lab; scipy and rospy have 0.6
 _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
 
 
@@ -66,8 +59,5 @@ def _missing_modules(records: Mapping[str, Record], script: Path) -> List[str]:
     names = sorted({name for line in lines for name in _NO_MODULE.findall(line)})
     modules = {it: next(script.parent.glob(f"{it}.py"), script.parent / it) for it in names}  # a file or a folder
     return [
-        BESIDE.format(path.name, script.name)
-        if path.exists()
-        else MISSING.format(it, did_you_mean(it, LAB_MODULES, similarity=MISTYPED) or NAME_IT)
-        for it, path in modules.items()
+        BESIDE.format(path.name, script.name) if path.exists() else MISSING.format(it) for it, path in modules.items()
     ]

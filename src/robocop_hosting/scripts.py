@@ -30,7 +30,6 @@ PYTHON3 = re.compile(r"(/usr)?/bin/(env python3|(env -S )?python3( .*)?)")
 FIRST_LINE = "#!/usr/bin/env python3"
 NOT_EXECUTABLE = "is not executable"
 HAS_BYTE_ORDER_MARK = "begins with a byte-order mark"
-MAX_LINES_ABOVE = 20  # from a script's top in which a #! line is looked for
 IMPORT = re.compile(rb"^[ \t]*(?:from|import)[ \t]+([\w., \t]+)", re.M)
 
 
@@ -164,7 +163,7 @@ def _imports(content: bytes) -> Set[str]:
 def start_problems(path: Path) -> Iterator[Tuple[str, str]]:
     """Why Linux can't start a script, each with its remedy."""
     content = read_bytes(path)
-    first, _, rest = content.partition(b"\n")
+    first = content.partition(b"\n")[0]
     if not os.access(path, os.X_OK):
         yield NOT_EXECUTABLE, f"chmod +x {path.name}"
     if first.startswith(b"#!"):
@@ -172,10 +171,8 @@ def start_problems(path: Path) -> Iterator[Tuple[str, str]]:
             yield "has Windows line endings (CRLF)", "save it with those of Unix"
     elif content.startswith(codecs.BOM_UTF8):
         yield HAS_BYTE_ORDER_MARK, "save it as UTF-8 without one"
-    elif any(line.startswith(b"#!") for line in rest.split(b"\n", MAX_LINES_ABOVE)):
-        yield "has its #! line below other lines", "make it the first line"
     else:
-        yield "has no #! line", f"make {FIRST_LINE} its first line"
+        yield "does not begin with a #! line", f"make {FIRST_LINE} its first line"
 
 
 def interpreter(path: Path) -> str:

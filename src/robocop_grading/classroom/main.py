@@ -8,21 +8,20 @@ import sys
 import time
 from functools import partial
 from pathlib import Path
-from typing import Callable, Collection, Dict, List, Mapping, Optional, Sequence, Set
+from typing import Callable, Dict, List, Mapping
 from xml.etree import ElementTree
 
 from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.own_path import expect_own
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
-from aro_robocop_goto_as.suggestions import did_you_mean
 from robocop_hosting import orphans
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
 from ..cli import INTERRUPTED, WRONG_USE
 from ..errors import GradingSetupError
-from ..files.exports import class_folder, hand_in_of, people, visible
+from ..files.exports import class_folder, people, visible
 from ..plan import Plan
 from ..plan_file import load
 from ..report.write import make_report_folder
@@ -41,29 +40,22 @@ CSV, HTML = "grades.csv", "index.html"
 CLASS_STAMP, PLAN = ".robocop_class", ".plan.yaml"  # in the folder of the results: the seed, and a copy of the plan
 WORKERS_LOG = ".workers.log"  # in the folder of the results
 NOT_YET = "not graded yet: run the same command again to continue"
-NEW_POINTS = "the points have changed: the table and the overview have the new ones, reports the old ones until --again"
-AGAIN_HELP = "also grade these hand-ins, or all, if no name follows, that have a result"
 CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
 
 
 class Gradebook:
     """The hand-ins of one folder and their grades so far."""
 
-    def __init__(
-        self, folder: Path, results: Results, plan: Plan, hand_ins: Mapping[str, str], again: Collection[str]
-    ) -> None:
+    def __init__(self, folder: Path, results: Results, plan: Plan, hand_ins: Mapping[str, str]) -> None:
         self.folder, self.plan, self.results = folder, plan, results
         self._people = people(folder)
         self.count = len(hand_ins)
         self.done: Dict[str, StoredGrade] = {
-            name: results.read(name)
-            for name, digest in hand_ins.items()
-            if name not in again and results.has(name, digest)
+            name: results.read(name) for name, digest in hand_ins.items() if results.has(name, digest)
         }
-        left = [name for name in hand_ins if name not in self.done]
-        self.waiting = {name: hand_ins[name] for name in sorted(left, key=lambda name: name not in again)}
+        self.waiting = {name: digest for name, digest in hand_ins.items() if name not in self.done}
         self.problems: Dict[str, str] = {}
-        self._started, self._before = time.monotonic(), {*self.done}
+        self._started, self._ran = time.monotonic(), 0
 
     @property
     def figures(self) -> Summary:
@@ -74,9 +66,8 @@ class Gradebook:
     @property
     def pace(self) -> str:
         """The rate of grading and the time left, in words, by the hand-ins that have run; the others take no time."""
-        ran = sum(it.is_judged for name, it in self.done.items() if name not in self._before)
         left = [name for name, digest in self.waiting.items() if digest and name not in self.problems]
-        return pace(ran, len(left), time.monotonic() - self._started)
+        return pace(self._ran, len(left), time.monotonic() - self._started)
 
     def summary_lines(self) -> List[str]:
         """The figures for the terminal, and the hand-ins that are not gradable, with the reasons."""
@@ -93,6 +84,7 @@ class Gradebook:
             return shortened(one_line(f"{name}: {problem}"), MAX_TOLD)
         result = self.done[name] = self.results.read(name)
         self.waiting.pop(name, None)
+        self._ran += result.is_judged
         problems = shortened(f" ({' | '.join(result.problems)})", MAX_TOLD) if result.problems else ""
         words = f"{result.words if result.is_judged else 'not gradable'}, {result.seconds:.0f} s{problems}"
         left = f"; {self.pace}" if self.pace else ""
@@ -118,7 +110,6 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, metavar="N", help=CLASS_SEED)
     parser.add_argument("--workers", type=int, metavar="N", help="hand-ins at once (default: one a core)")
     parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")
-    parser.add_argument("--again", nargs="*", metavar="NAME", help=AGAIN_HELP)
     parser.add_argument("--unsafe", action="store_true", help="run the submissions without bubblewrap's sandbox")
     return parser.parse_args()
 
@@ -149,15 +140,11 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
     with scratch_folder(), exclusive(out / ".run"):
         plan = class_plan(args, out, share)
         results = Results(out, plan, version or "")
-        text = plan.path.read_text(encoding="utf-8")
-        new_points = (out / PLAN).is_file() and (out / PLAN).read_text(encoding="utf-8") != text
-        gradebook = Gradebook(folder, results, plan, hand_ins, to_regrade(args.again, hand_ins))
+        gradebook = Gradebook(folder, results, plan, hand_ins)
         write_atomically(out / CLASS_STAMP, f"{plan.seed}\n")
-        write_atomically(out / PLAN, text)
+        write_atomically(out / PLAN, plan.path.read_text(encoding="utf-8"))
         print(f"{gradebook.count} handed in, {len(gradebook.done)} of them already graded", flush=True)
         print(f"scenarios: seed {plan.seed}", flush=True)
-        if new_points and gradebook.done:
-            print(NEW_POINTS, flush=True)
         if not args.scheduler:
             open_sandbox(args.unsafe)
             lab_environment(share, state)
@@ -196,14 +183,6 @@ def main() -> None:
     sys.exit(1 if gradebook.figures.not_judged else 0)
 
 
-def to_regrade(again: Optional[Sequence[str]], hand_ins: Collection[str]) -> Set[str]:
-    """The names of the hand-ins to be graded again, all if no name is given; GradingSetupError for an unknown name."""
-    names = hand_ins if again is not None and not again else [hand_in_of(Path(name).name) for name in again or ()]
-    for name in {*names} - {*hand_ins}:
-        raise GradingSetupError(f"--again {name}: no hand-in of this name{did_you_mean(name, hand_ins)}")
-    return {*names}
-
-
 def class_plan(args: argparse.Namespace, out: Path, share: Path) -> Plan:
     """The given plan and seed, else those of the results so far; GradingSetupError if other outcomes would follow."""
     kept = out / PLAN
@@ -211,8 +190,8 @@ def class_plan(args: argparse.Namespace, out: Path, share: Path) -> Plan:
     seeds = (args.seed, before.seed if before else None, random.randint(1, MAX_SEED))
     path = Path(args.plan) if args.plan else kept if before else share / "config" / "grading.yaml"
     plan = load(path, next(seed for seed in seeds if seed is not None))
-    if before and before.outcomes != plan.outcomes and args.again != []:
-        told = "another one may differ in points only, unless --again without names grades everybody with it"
+    if before and before.outcomes != plan.outcomes:
+        told = "another one may differ in points only; for other grades give another folder by --report"
         raise GradingSetupError(f"{out} has the results of the plan {kept} and seed {before.seed}: {told}")
     return plan
 

@@ -209,7 +209,6 @@ _PAGES.filters.update(
     css=lambda outcome: outcome.partition(":")[0].partition(" ")[0],  # the class of an outcome
     of=lambda checks: "{:g} / {:g}".format(*scored(checks)),
     points=lambda points: "–" if points is None else f"{points:g}",
-    printable=printable_lines,
     shortened=shortened,
     quoted=lambda name: quote(os.fsencode(name)),  # a file's name, whatever bytes it consists of, as part of a URL
 )
