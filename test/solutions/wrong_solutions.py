@@ -124,19 +124,6 @@ WRONG = (
             "            lock.acquire()\n            lock.acquire()\n",
         ),
     ),
-    Wrong(
-        "result_of_the_older_goal_is_late",
-        "cancel",
-        "is noticed at once, but the older goal's result comes 6.1 s later",
-        (
-            (
-                "                handle.set_canceled(GoToPositionResult(False, 'preempted'))\n",
-                "                result = [GoToPositionResult(False, 'preempted')]\n"
-                "                threading.Timer(6.0, handle.set_canceled, result).start()\n",
-            ),
-        ),
-        "right/action_server_subclass.py.in",
-    ),
     _server(
         "map_frame",
         "feedback_position",
