@@ -7,6 +7,9 @@ setup(
     **generate_distutils_setup(
         packages=find_packages("src"),
         package_dir={"": "src"},
-        package_data={"robocop_grading.report": ["templates/*.html"]},
+        package_data={
+            "aro_robocop_goto_as": ["*/*.[ch]", "*/*/*.c"],  # whose structures Python reads
+            "robocop_grading.report": ["templates/*.html"],
+        },
     )
 )

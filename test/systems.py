@@ -12,7 +12,7 @@ import rosgraph
 import yaml
 from waiting import DEADLINE, wait_for
 
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 END_TIMEOUT = 40.0  # [s, wall] for a process to end; roslaunch needs 17 s to kill a node that does not end
 CALLER = "/system_test"
@@ -53,6 +53,14 @@ class Process(subprocess.Popen):
             with contextlib.suppress(subprocess.TimeoutExpired):
                 return self.wait(END_TIMEOUT)
         raise AssertionError(f"process {self.pid} outlived SIGKILL: {self.args}")
+
+
+def is_running(uri, node):
+    """Return whether a node answers; a master also lists nodes that were killed."""
+    try:
+        return rosgraph.is_master_online(rosgraph.Master(CALLER, uri).lookupNode(node))
+    except rosgraph.MasterException:
+        return False
 
 
 class System:

@@ -33,9 +33,11 @@ From a world file to a scan:
 
     world.load                    by world.sdf or world.grid_map -> world.model.World
     raycast.cross_section         the world at a sensor's height: segments and circles
-    raycast.sections              + robots and where on them the sensor is -> what its beams can hit
+    raycast.scenes              + robots and where on them the sensor is -> what its beams can hit
         raycast.beams             lays this out for caster.c, which caster_library loads: exact distances along beams
     sensors.lidar                 noise, range limits -> ranges
+
+Where there is room in that world, and its map: `floor_plan`.
 
 From the system to a browser and back, by viser:
 
@@ -49,8 +51,8 @@ From ./robocop COMMAND to the program that does the work:
     robocop                       the shell script: a state folder, a clean environment
     cli.commands                  names the function of each command, which checks the arguments and chooses the program
         cli.program               has the script install and build what that program needs, then becomes it
-    ros.cli.rviz                  topics, tf_static, the world's markers -> rviz_config.Observed
-        ros.cli.rviz_config       + rviz/robocop.rviz -> the configuration file that RViz opens
+    ros.cli.launch                roslaunch, then ros.cli.overview of what it has started
+    ros.cli.rviz                  RViz with a configuration of rviz/
 
 Only `ros` imports rospy. Each component of the simulator declares its parameters, in a group of its own, and
 `simulation.params` composes the groups. Limits and timeouts are parameters first, so look for them there and in

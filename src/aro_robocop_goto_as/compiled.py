@@ -1,7 +1,8 @@
-"""The package's compiled libraries: how they are found, loaded and checked."""
+"""The package's compiled libraries: how they are found, loaded and checked, and the structures that they take."""
 
 import ctypes
 import os
+import re
 from typing import Any, List, Optional, Tuple
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from . import __path__ as package_folders
 from .errors import InstallationError
 
+KINDS = {"double": ctypes.c_double, "int64_t": ctypes.c_int64}  # of the numbers in structures, by their C types
 BUILD = "build the catkin workspace (./robocop setup, or catkin_make) and source its setup.bash"
 
 
@@ -29,12 +31,20 @@ def find(name: str) -> str:
     raise InstallationError(f"{file_name(name)} is in none of {', '.join(package_folders)}: {BUILD}")
 
 
-def load(name: str, version: int) -> ctypes.PyDLL:
+def source(file: str) -> str:
+    """A C file of this package, without its comments."""
+    with open(os.path.join(os.path.dirname(__file__), file), encoding="utf-8") as stream:
+        return re.sub(r"/\*.*?\*/", "", stream.read(), flags=re.DOTALL)
+
+
+def load(name: str, file: str) -> ctypes.PyDLL:
     """Load a library. Its calls hold the GIL, so only one thread at a time runs in it.
 
-    InstallationError when it is missing, can't be loaded, or was built from other sources: their version differs.
+    InstallationError when it is missing, can't be loaded, or was built from other sources, whose version differs from
+    the one in the C file.
     """
     path = find(name)
+    version = int(re.findall(r"_VERSION (\d+)", source(file))[0])
     try:
         library = ctypes.PyDLL(path)
         built = getattr(library, f"aro_{name}_version")()
@@ -45,9 +55,15 @@ def load(name: str, version: int) -> ctypes.PyDLL:
     return library
 
 
-def members(kind: Any, names: str) -> List[Tuple[str, Any]]:
-    """Members of the same type, for the `_fields_` of a ctypes.Structure."""
-    return [(name, kind) for name in names.split()]
+def structure(file: str, name: str) -> Any:
+    """The `struct` of this name in a C file, as a class of ctypes; its pointers are addresses."""
+    (body,) = re.findall(rf"^struct {name} {{(.*?)^}};", source(file), re.DOTALL | re.MULTILINE)
+    members = [
+        (member.lstrip("*"), ctypes.c_void_p if member.startswith("*") else KINDS[kind])
+        for kind, names in re.findall(r"(\w+) (\*?\w+(?:, \*?\w+)*);", body)
+        for member in names.split(", ")
+    ]
+    return type(name, (ctypes.Structure,), {"_fields_": members})
 
 
 def address(name: str, array: np.ndarray, shape: Tuple[Optional[int], ...], dtype: type = np.float64) -> int:

@@ -1,12 +1,13 @@
 """Names in ROS: of the lab's package, nodes and action, of a robot's topics and frames, of places. Imports no ROS."""
 
 import os
+from pathlib import Path
 
 PACKAGE = "aro_robocop_goto_as"
+ROOT = Path(__file__).resolve().parents[2]  # of the checkout
 SIMULATOR, WEB = "robocop_sim", "robocop_web"  # nodes
 SERVER, BRIDGE = "aro_robocop_goto_as_node", "robocop_rviz_goto_ac_node"  # nodes, fixed by the handout
 COMMAND_VARIABLE = "ROBOCOP_COMMAND"  # set in the container image
-RVIZ_LOG = "ROBOCOP_RVIZ_LOG"  # environment variable: file for what RViz prints; without it RViz writes to the terminal
 ACTION = "robocop_goto_as"  # fixed by the handout
 ACTION_TYPE = f"{PACKAGE}/GoToPositionAction"
 # Frames, of REP-105 and the robots' URDFs; of several robots, all but the first two get the robot's name as a prefix.

@@ -30,9 +30,10 @@ def parameter(
 ) -> Any:
     """A dataclass field with its inclusive bounds or its choices; without a default the key is required.
 
-    `about` is what param_docs writes about it: its unit in brackets, if it has one, then its meaning. `otherwise` says,
-    for a default of None, what is used when the key is omitted. `key` is a key that Python does not take as the field's
-    name. A `live` parameter can be changed while its node runs.
+    about: its unit in brackets, if it has one, then its meaning, for the docs
+    otherwise: in words, what is used if the default is None and no value is given
+    key: its name in files, where Python does not allow it as the field's name
+    live: whether it can be changed while its node runs
     """
     metadata = {"low": low, "high": high, "choices": tuple(choices), "otherwise": otherwise, "key": key}
     return field(default=default, metadata={**metadata, "about": about, "live": live})

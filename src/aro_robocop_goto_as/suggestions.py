@@ -5,11 +5,11 @@ from typing import Collection, Iterable
 MAX_LINE = 78  # characters; `rosservice call` wraps a longer text
 
 
-def did_you_mean(word: str, known: Iterable[str], form: str = "{}", similarity: float = 0.6) -> str:
+def did_you_mean(word: str, known: Iterable[str], form: str = "{}") -> str:
     """The end of an error message about a mistyped word, with the word that was meant; empty if no word is similar."""
     import difflib  # only where there is an error
 
-    close = difflib.get_close_matches(word, list(known), n=1, cutoff=similarity)
+    close = difflib.get_close_matches(word, list(known), n=1)
     return f"; did you mean {form.format(close[0])}?" if close else ""
 
 

@@ -18,7 +18,7 @@ From a hand-in to its grade:
       | record        one for each scenario: samples of the truth, and everything that the node sent
       v
     judge             records + plan (config/grading.yaml) -> grade, by checks/, one function for each contract
-      | report/       report.html, report.json, summary.md, results.json, classroom.json
+      | report/       report.html, report.json, results.json, classroom.json
       v
     grader            runs all of this for one submission; called by cli (grade) and classroom/ (grade-class)
 

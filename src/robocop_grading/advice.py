@@ -1,7 +1,6 @@
 """Advice on a submission's source code: mistakes that cost no points, but sometimes fail on a robot or simulator."""
 
 import ast
-import re
 from typing import Dict, Iterator, List, Mapping, Tuple
 
 AUTO_START = (
@@ -16,14 +15,6 @@ WALL_ALARM = (
     "signal.alarm and signal.setitimer follow the wall clock, also in the grader, where simulated time passes at "
     "another rate: use rospy.Timer"
 )
-
-
-TODO = re.compile(r"#[ \t]*(TODO (\d+))\b")
-
-
-def next_todo(code: str) -> str:
-    """The first of the skeleton's TODOs that a program still has, such as "TODO 1"."""
-    return min(TODO.findall(code), key=lambda found: int(found[1]), default=("", ""))[0]
 
 
 def advice(code: str) -> List[str]:

@@ -8,7 +8,7 @@ import traceback
 import zlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Callable, List, Mapping, Optional, Sequence, Tuple
+from typing import Callable, List, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import InstallationError, ParameterError, RobocopError
 from aro_robocop_goto_as.own_path import expect_own
@@ -22,7 +22,7 @@ from . import faults
 from .errors import GradingError, GradingSetupError, PlanError, UngradableError
 from .files import unpacking
 from .grader import grade as grade_submission
-from .grades import CheckOutcome, CheckResult, Grade, scored
+from .grades import CheckOutcome, Grade
 from .plan import Plan
 from .plan_file import load
 from .report.write import make_report_folder
@@ -37,8 +37,8 @@ NOT_EVERYTHING, WRONG_USE, NO_GRADE, NOT_GRADED, INTERRUPTED = 1, 2, 3, 4, 130
 SEED_HELP = "draw the scenarios' goals and obstacles from their ranges (default 0: the middle of each range)"
 ALL_PLOTS = "draw plots and keep bags of all scenarios (default: of those in which a check failed)"
 WRONG_USES = (GradingSetupError, InstallationError, ParameterError, PlanError)
-MAX_SHOWN = 1_000  # characters of an error
-STAMP = ".robocop_report"  # in a folder of a report
+MAX_ERROR = 1_000  # characters of an error
+REPORT_STAMP = ".robocop_report"  # in a folder of a report
 
 
 def progress(plan: Plan, parts: Sequence[str]) -> Callable[[str, str], None]:
@@ -60,32 +60,17 @@ def _show(text: str) -> None:
         print(text, file=sys.stderr, flush=True)
 
 
-def as_text(grade: Grade, next_steps: Mapping[str, str]) -> str:
-    """The grade for a terminal: failures first, what passed in one line; `next_steps` by part."""
+def in_short(grade: Grade) -> List[str]:
+    """The lines for the terminal: mistakes, the one to fix first before the others; problems; the points."""
     lines = []
     for mistake in grade.mistakes:
-        check = mistake.check
-        lines.append(f"{'FAILED':13}  {_points([check])}  {check.marked(check.sentence)}")
-        lines.append(f"{'':13}  {check.words}")
-        if mistake.followers:
-            lines.append(f"{'':13}  {_points(mistake.followers)}  {mistake.consequences}")
-    for words, checks in grade.others.items():
-        outcome, _, why = words.partition(": ")
-        every = len(checks) == len(grade.checks)
-        names = "every check" if every else ", ".join(check.marked(check.name) for check in checks)
-        lines.append(f"{outcome:13}  {_points(checks)}  {names}{why and ': '}{why}")
-    lines += [f"graded: {file}" for file in grade.files]
+        lines.append(f"{mistake.check.name} costs {mistake.cost}: {mistake.sentence}")
+        lines.append(f"    {mistake.check.observed}")
+    lines += [words for words, checks in grade.others.items() if checks[0].outcome is not CheckOutcome.PASSED]
     lines += [f"problem: {problem}" for problem in grade.problems]
-    lines += [f"note: {note}" for note in grade.notes]
-    lines += [f"fix first: {mistake.sentence}" for mistake in grade.mistakes[:1]]
-    unfinished = {check.part for check in grade.checks if check.outcome is not CheckOutcome.PASSED and not check.extra}
-    lines += [f"next: {step}" for part, step in next_steps.items() if step and part in unfinished][:1]
+    lines += [f"notes, which cost no points: {len(grade.notes)}, in the report"] if grade.notes else []
     lines.append(f"{grade.name}: {grade.words}")
-    return "\n".join(printable(line) for line in lines)  # explanations may quote the submission's output
-
-
-def _points(checks: Sequence[CheckResult]) -> str:
-    return "{:4g} / {:<4g}".format(*scored(checks))
+    return [printable(line) for line in lines]  # causes may quote the submission's output
 
 
 def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[str, List[str]]:
@@ -136,7 +121,7 @@ def _plan(args: argparse.Namespace, share: Path) -> Plan:
 def _kept_traceback(args: argparse.Namespace) -> Path:
     """The path of a file in the report's folder, to which the traceback of the present exception is written."""
     folder = Path(args.report or report_folder(places()[0] / "reports", args.path, not args.only))
-    return faults.keep([traceback.format_exc()], make_report_folder(folder, STAMP))
+    return faults.keep([traceback.format_exc()], make_report_folder(folder, REPORT_STAMP))
 
 
 def main() -> None:
@@ -146,9 +131,9 @@ def main() -> None:
     try:
         state, share = places()
         if args.report:
-            expect_own(Path(os.path.realpath(args.report)), STAMP, Path(os.path.realpath(args.path)))
+            expect_own(Path(os.path.realpath(args.report)), REPORT_STAMP, Path(os.path.realpath(args.path)))
         plan = _plan(args, share)
-        given = make_report_folder(Path(args.report), STAMP) if args.report else None
+        given = make_report_folder(Path(args.report), REPORT_STAMP) if args.report else None
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"])
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
         with scratch_folder(), exclusive(folder_in_use):
@@ -159,7 +144,8 @@ def main() -> None:
             submission = replace(submission, notes=[*submission.notes, *notes])
             if not any(plan.examines(script.part) for script in submission.scripts):
                 raise GradingSetupError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
-            folder = given or make_report_folder(report_folder(state / "reports", args.path, plan.is_whole), STAMP)
+            usual = report_folder(state / "reports", args.path, plan.is_whole)
+            folder = given or make_report_folder(usual, REPORT_STAMP)
             on_progress = progress(plan, [script.part for script in submission.scripts])
             runner = Runner(plan, state, sandbox, on_progress)
             grade = grade_submission(runner, submission, folder, all_plots=args.all_plots)
@@ -173,13 +159,12 @@ def main() -> None:
         ignore_all()
         sys.exit(INTERRUPTED)
     except Exception as error:  # the grader failed on this submission
-        shown = printable_lines(repr(error))[:MAX_SHOWN] + faults.changed_sources()
+        shown = printable_lines(repr(error))[:MAX_ERROR]
         print(f"robocop grade: could not be graded: {shown}", file=sys.stderr)
         with contextlib.suppress(OSError, RobocopError):  # the disk may be full
             print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
         sys.exit(NO_GRADE)
     print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)
-    print(as_text(grade, {script.part: script.next_step for script in submission.scripts}))
-    print(f"scenarios: seed {plan.seed}")
+    print("\n".join(in_short(grade)))
     print(printable(f"report: {folder / 'report.html'}"))
     sys.exit(0 if grade.all_right else NOT_EVERYTHING)

@@ -6,25 +6,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Mapping
 
-from aro_robocop_goto_as.suggestions import did_you_mean
 from robocop_hosting.tree import temporary_folder
 
 from . import judge
 from .grades import Grade, completed
+from .plan import PARTS
 from .record import Record
 from .report import write as report
 from .runner import Runner
 from .submission import Submission
 
 NOT_WHOLE = "this is no full grade: only some checks, and the scenarios that they need"
-MISSING = "Python's module {} is not installed here{}"
+MISSING = "Python's module {} is not installed here; if the lab has it, name its package in the plan, under packages"
 BESIDE = "{0} lies beside {1}, but only {1} was given: grade the folder"
-NAME_IT = "; if the lab has it, name its package in the plan, under packages"
-LAB_MODULES = (
-    "actionlib actionlib_msgs angles aro_robocop_goto_as geometry_msgs laser_geometry nav_msgs numpy ros_numpy rospy "
-    "sensor_msgs std_msgs tf tf2_geometry_msgs tf2_ros tf_conversions"
-).split()
-MISTYPED = 0.75  # similarity to a module of the lab; scipy and rospy have 0.6
 _NO_MODULE = re.compile(r"ModuleNotFoundError: No module named '(\w+)'")
 
 
@@ -38,15 +32,21 @@ def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = Fa
     problems: Dict[str, str] = {}
     with temporary_folder("robocop-grade-") as work:
         notes = [] if plan.is_whole else [NOT_WHOLE]
+        missing: List[str] = []
         for script in (script for script in submission.scripts if plan.examines(script.part)):
             recorded = runner.run(submission, script, Path(work, script.part))
             records[script.part], problems[script.part] = recorded.records, recorded.problem
-            said = *recorded.told, *_missing_modules(recorded.records, script.path)
-            notes += [f"{script.part}: {it}" for it in said]
+            notes += [f"{script.part}: {it}" for it in recorded.told]
+            missing += [f"{script.part}: {it}" for it in _missing_modules(recorded.records, script.path)]
         judged = completed(judge.judge(submission.name, plan, records, problems), plan)
         told = dict.fromkeys([*judged.notes, *notes, *(submission.notes if plan.is_whole else ())])
-        judged = replace(judged, files=tuple(submission.files), notes=tuple(told))
+        judged = replace(
+            judged, files=tuple(submission.files), problems=(*judged.problems, *missing), notes=tuple(told)
+        )
         folder.mkdir(parents=True, exist_ok=True)
+        for part in PARTS:
+            for earlier in folder.glob(f"{part}-*.bag"):
+                earlier.unlink()
         for bag in sorted(Path(work).glob("*/*.bag")):
             if all_plots or judged.failed_in(*bag.stem.split("-", 1)):
                 shutil.copyfile(bag, folder / bag.name)
@@ -59,8 +59,5 @@ def _missing_modules(records: Mapping[str, Record], script: Path) -> List[str]:
     names = sorted({name for line in lines for name in _NO_MODULE.findall(line)})
     modules = {it: next(script.parent.glob(f"{it}.py"), script.parent / it) for it in names}  # a file or a folder
     return [
-        BESIDE.format(path.name, script.name)
-        if path.exists()
-        else MISSING.format(it, did_you_mean(it, LAB_MODULES, similarity=MISTYPED) or NAME_IT)
-        for it, path in modules.items()
+        BESIDE.format(path.name, script.name) if path.exists() else MISSING.format(it) for it, path in modules.items()
     ]

@@ -22,7 +22,7 @@ SKELETON = Path(__file__).resolve().parent / "skeleton"
 SUFFIX = ".in"  # hides the files from rosrun and roslaunch, which search this whole package
 IMAGE = "@IMAGE@"  # in the files of the folders .NAME, which are for GitHub: stands for the container image
 SEED = "@SEED@"  # in run_autograder: what students can't see
-GRADESCOPE = ".gradescope"  # the folder of what is for Gradescope
+GRADESCOPE_FOLDER = ".gradescope"  # the folder of what is for Gradescope
 # What an installation of this package needs, besides README, docs and tests.
 INSTALLED = "action cfg compat config install launch msg rviz scripts src srv urdf worlds".split()
 INSTALLED += "CMakeLists.txt LICENSE package.xml pyproject.toml robocop setup.py test/ros".split()
@@ -37,7 +37,7 @@ def make(folder: Path, image: Optional[str] = None) -> None:
     for path in sorted(SKELETON.rglob(f"*{SUFFIX}")):
         relative = path.relative_to(SKELETON).with_suffix("")
         target = folder / relative
-        if relative.parts[0] == GRADESCOPE or (relative.parts[0].startswith(".") and image is None):
+        if relative.parts[0] == GRADESCOPE_FOLDER or (relative.parts[0].startswith(".") and image is None):
             continue
         target.parent.mkdir(parents=True, exist_ok=True)
         if image is None:
@@ -52,7 +52,7 @@ def make_autograder(share: Path, path: Path) -> None:
     """Write Gradescope's zip: setup.sh, run_autograder with a random seed, and this package for machines without it."""
     seed = str(random.randint(1, 99_999))
     with zipfile.ZipFile(path, "x", zipfile.ZIP_DEFLATED) as archive:
-        for script in sorted((SKELETON / GRADESCOPE).glob(f"*{SUFFIX}")):
+        for script in sorted((SKELETON / GRADESCOPE_FOLDER).glob(f"*{SUFFIX}")):
             member = zipfile.ZipInfo.from_file(script, script.with_suffix("").name)
             archive.writestr(member, script.read_text(encoding="utf-8").replace(SEED, seed))
         for name in INSTALLED:

@@ -16,7 +16,7 @@ from robocop_hosting.workspace import exclusive
 from .errors import UngradableError
 
 # With a version, as pip takes it, and not an option of pip or dpkg.
-NAME = re.compile(r"[A-Za-z0-9][\w.+\-]*(\[[\w,]+\])?([=<>!~]=[\w.*+]+)?", re.ASCII)
+PACKAGE_NAME = re.compile(r"[A-Za-z0-9][\w.+\-]*(\[[\w,]+\])?([=<>!~]=[\w.*+]+)?", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Packages:
     def conflicts(self) -> List[str]:
         """The names that are no package names, in words."""
         names = (*self.debian, *self.pypi)
-        return [f"expected the name of a package, got {it!r}" for it in names if not NAME.fullmatch(it)]
+        return [f"expected the name of a package, got {it!r}" for it in names if not PACKAGE_NAME.fullmatch(it)]
 
 
 def provide(packages: Packages, state: Path) -> Optional[Path]:

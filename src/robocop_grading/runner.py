@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Callable, Dict, Optional, Sequence
 
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 from robocop_hosting.workspace import compat_folder, places
 
 from . import record as rec

@@ -15,10 +15,10 @@ from robocop_hosting.errors import HostingError
 from robocop_hosting.launch_file import READER
 from robocop_hosting.package import MAX_NAMED, LaunchPlan, Package, find_package, read_launch_plan
 from robocop_hosting.scripts import (
-    BYTE_ORDER_MARK,
     FIRST_LINE,
+    HAS_BYTE_ORDER_MARK,
     NOT_EXECUTABLE,
-    PARTS,
+    PART_OF,
     Choice,
     candidates,
     choose,
@@ -31,7 +31,7 @@ from robocop_hosting.scripts import (
 from robocop_hosting.tree import read_text
 from robocop_hosting.workspace import CPP, Environment, compat_environment, places, workspace_name
 
-from .advice import advice, next_todo
+from .advice import advice
 from .errors import GradingError
 from .files.exports import SEVERAL, holds_class
 from .new import SKELETON, make
@@ -48,7 +48,6 @@ class Script:
     part: str  # server or bridge
     path: Path
     arguments: List[str] = field(default_factory=list)
-    next_step: str = ""  # in a program that still has TODOs of the skeleton
     variables: Mapping[str, str] = field(default_factory=dict)  # of its environment, from its launch file
     shown: str = ""  # its path within the submission, and what starts it
 
@@ -150,12 +149,10 @@ def _ready(
 def _script(part: str, choice: Choice, top: Path) -> Script:
     node, name = choice.node, str(choice.path.relative_to(top))
     shown = name if node is None else f"{name}, started by {node.location}"
-    todo = next_todo(read_text(choice.path))
     return Script(
         part,
         choice.path,
         [] if node is None else [*node.arguments, f"__name:={node.name}"],  # without a launch file as by rosrun
-        f"{todo} in {name}" if todo else "",
         {} if node is None else node.variables,
         shown,
     )
@@ -188,8 +185,8 @@ def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: 
     if not found.choices:
         names = [str(path.relative_to(copy)) for path in files_below(copy) if path.suffix == ".py"]
         raise GradingError(
-            f"{package.path}: nothing to grade: expected scripts called {' or '.join(PARTS)}, or started by the launch "
-            f"file; found: {', '.join(names[:MAX_NAMED]) or 'no Python script'}"
+            f"{package.path}: nothing to grade: expected scripts called {' or '.join(PART_OF)}, or started by the "
+            f"launch file; found: {', '.join(names[:MAX_NAMED]) or 'no Python script'}"
         )
     return _ready(package.path.name, copy, [folder, *below], environment, found)
 
@@ -204,7 +201,7 @@ def _start_problems(part: str, choice: Choice, is_loose: bool) -> Iterator[str]:
         if is_loose and problem == NOT_EXECUTABLE:
             continue
         result = "so roslaunch can't start it in the lab"
-        if choice.is_installed and problem != BYTE_ORDER_MARK:
+        if choice.is_installed and problem != HAS_BYTE_ORDER_MARK:
             result = "so the lab starts it only by way of catkin_install_python"
         yield f"{part}: {name} {problem}, {result}: {remedy}"
     if interpreter(choice.path) and not choice.is_installed:

@@ -12,7 +12,7 @@ from aro_robocop_goto_as.names import PACKAGE
 from . import tree
 from .errors import HostingError
 from .launch_file import LaunchNode, read
-from .scripts import ASIDE, PARTS, Choice, choose, doubts_of_place, files_below
+from .scripts import ASIDE, PART_OF, Choice, choose, files_below
 from .tree import read_bytes, read_xml
 from .workspace import COMPAT, Environment, Run
 
@@ -73,7 +73,7 @@ def find_package(path: str, launch: str = "", grades: bool = True) -> Package:
     if launch_file is None and not choose(folder):
         scripts = [str(path.relative_to(folder)) for path in files_below(folder) if path.suffix == ".py"]
         raise HostingError(
-            f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called {' or '.join(PARTS)}, "
+            f"{folder}: nothing to start: expected launch/{LAUNCH_FILE}, or scripts called {' or '.join(PART_OF)}, "
             f"or one that makes an action server; found: {', '.join(scripts[:MAX_NAMED]) or 'no Python script'}"
             + (f", and launch files: {others}" if others else "")
         )
@@ -130,7 +130,7 @@ def _chosen(path: str, named: Sequence[Tuple[str, Path]], launch: str) -> Tuple[
 def can_start(folder: Path, launch: str) -> bool:
     """Return whether a package has the launch file of this name, or without a name something that would be started."""
     try:
-        return _launch_file(folder, launch)[0] is not None or bool(choose(folder, expects_one=False))
+        return _launch_file(folder, launch)[0] is not None or bool(choose(folder))
     except HostingError:
         return not launch  # several files could be the one: that is reported if the package is chosen
 
@@ -174,14 +174,14 @@ def _name(manifest: Path, root: Element) -> str:
 def _launch_file(folder: Path, wanted: str) -> Tuple[Optional[Path], List[Path]]:
     """The launch file to start, and all launch files; HostingError if several different files have its name."""
     files = [path for path in files_below(folder) if path.suffix == ".launch"]
-    files.sort(key=lambda path: (doubts_of_place(path, folder, "launch"), path))
+    doubts = {it: (bool(ASIDE.search(str(it.relative_to(folder)))), it.parent.name != "launch") for it in files}
+    files.sort(key=lambda path: (doubts[path], path))
     matching = [path for path in files if path.name == (wanted or LAUNCH_FILE)]
     if wanted and not matching:
         known = ", ".join(sorted(path.name for path in files)) or "none"
         raise HostingError(f"{folder}: no launch file {wanted!r}; available: {known}")
     for path in matching[1:]:
-        equal = doubts_of_place(path, folder, "launch") == doubts_of_place(matching[0], folder, "launch")
-        if equal and read_bytes(path) != read_bytes(matching[0]):
+        if doubts[path] == doubts[matching[0]] and read_bytes(path) != read_bytes(matching[0]):
             names = " and ".join(str(it.relative_to(folder)) for it in (matching[0], path))
             raise HostingError(f"{names}: nothing says which of them is to be started: remove one")
     if matching or len(files) == 1:
@@ -233,7 +233,7 @@ def read_launch_plan(
             parameters = {**file.parameters, **parameters}
             names = {it.name for it in (*files_below(copy), *relays)}
             notes += [*file.warnings, *_not_done(package, file.nodes, choices, names)]
-        if all(part in choices and choices[part].node is not None for part in PARTS.values()):
+        if all(part in choices and choices[part].node is not None for part in PART_OF.values()):
             break
     return LaunchPlan(choose(copy, nodes, relays), parameters, notes, others)
 

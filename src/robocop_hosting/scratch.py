@@ -5,8 +5,9 @@ import os
 import tempfile
 from typing import Iterator, Optional
 
-from aro_robocop_goto_as.process import orphans, signals
+from aro_robocop_goto_as.process import signals
 
+from . import orphans
 from .tree import temporary_folder
 
 

@@ -17,7 +17,7 @@ from .errors import HostingError
 from .launch_file import LaunchNode
 from .tree import read_bytes
 
-PARTS = {"robocop_goto_as.py": "server", "robocop_rviz_goto_ac.py": "bridge"}  # the handout's scripts
+PART_OF = {"robocop_goto_as.py": "server", "robocop_rviz_goto_ac.py": "bridge"}  # the handout's scripts
 NODE_NAMES = {"server": SERVER, "bridge": BRIDGE}
 SERVERS, CLIENTS = {"SimpleActionServer", "ActionServer"}, {"SimpleActionClient", "ActionClient"}
 RAW = {"GoToPositionActionGoal", "GoToPositionActionResult"}  # what a server without actionlib uses
@@ -29,8 +29,7 @@ ASIDE = re.compile(r"(^|[^a-z])(backups?|bak|old|orig|copy|copies|archive|trash|
 PYTHON3 = re.compile(r"(/usr)?/bin/(env python3|(env -S )?python3( .*)?)")
 FIRST_LINE = "#!/usr/bin/env python3"
 NOT_EXECUTABLE = "is not executable"
-BYTE_ORDER_MARK = "begins with a byte-order mark"
-MAX_LINES = 20  # from a script's top in which a #! line is looked for
+HAS_BYTE_ORDER_MARK = "begins with a byte-order mark"
 IMPORT = re.compile(rb"^[ \t]*(?:from|import)[ \t]+([\w., \t]+)", re.M)
 
 
@@ -55,12 +54,12 @@ class Candidate(NamedTuple):
 
 def part_of(path: Path, top: Path) -> str:
     """ "server", "bridge", or "" for a file in `top` that is neither; any action client is a bridge here."""
-    return PARTS.get(path.name) or _part_by_words(_words(read_bytes(path, top)), CLIENTS) or _part_by_name(path.name)
+    return PART_OF.get(path.name) or _part_by_words(_words(read_bytes(path, top)), CLIENTS) or _part_by_name(path.name)
 
 
 def _part_by_name(name: str) -> str:
     """The part whose script has this name, or one with something added, as in robocop_goto_as_final.py, or ""."""
-    return next((part for it, part in PARTS.items() if name.startswith(it[: -len(".py")]) and name.endswith(".py")), "")
+    return next((part for it, part in PART_OF.items() if name.startswith(it[:-3]) and name.endswith(".py")), "")
 
 
 def _part_by_words(words: Set[str], of_bridge: Collection[str] = ()) -> str:
@@ -96,12 +95,6 @@ def files_below(top: Path) -> List[Path]:
     return found
 
 
-def doubts_of_place(path: Path, top: Path, folder: str) -> Tuple[bool, bool, bool]:
-    """Whether a file is in a copy, is not executable, is not in a folder of this name: smallest for the likeliest."""
-    is_aside = ASIDE.search(str(path.relative_to(top))) is not None
-    return is_aside, not os.access(path, os.X_OK), path.parent.name != folder
-
-
 def choose(
     top: Path, nodes: Sequence[LaunchNode] = (), relays: Collection[Path] = (), expects_one: bool = True
 ) -> Dict[str, Choice]:
@@ -114,7 +107,7 @@ def choose(
     scripts are equally likely, unless not `expects_one`.
     """
     found, chosen = sorted(candidates(top, nodes)), {}
-    for part in PARTS.values():
+    for part in PART_OF.values():
         own = [it for it in found if it.part == part]
         if own:
             best = own[0]
@@ -134,20 +127,20 @@ def choose(
 def candidates(top: Path, nodes: Sequence[LaunchNode] = ()) -> Iterator[Candidate]:
     """The scripts in `top` that could be a part's, as in choose()."""
     launched = {started.type: started for started in reversed(nodes)}  # the first of each type
-    contents = dict(_programs(top, {*PARTS, *launched}))
+    contents = dict(_programs(top, {*PART_OF, *launched}))
     words = {path: _words(content) for path, content in contents.items()}
     parts = {path: _part_by_words(it) for path, it in words.items()}  # a client may be that of another action
     for path, content in contents.items():
         node, imports = launched.get(path.name), _imports(content)
         modules = [part for other, part in parts.items() if other != path and other.stem in imports]
-        part = PARTS.get(path.name) or parts[path] or max(modules, default="")
+        part = PART_OF.get(path.name) or parts[path] or max(modules, default="")
         if not part and words[path] & CLIENTS:
             part = "bridge" if node else ""
         elif not part:
             part = _part_by_name(path.name)
         if part:
             is_aside = bool(ASIDE.search(str(path.relative_to(top))))
-            doubts = node is None, is_aside, path.name not in PARTS, b"init_node" not in content, not parts[path]
+            doubts = node is None, is_aside, path.name not in PART_OF, b"init_node" not in content, not parts[path]
             yield Candidate(doubts, path, part, node)
 
 
@@ -170,18 +163,16 @@ def _imports(content: bytes) -> Set[str]:
 def start_problems(path: Path) -> Iterator[Tuple[str, str]]:
     """Why Linux can't start a script, each with its remedy."""
     content = read_bytes(path)
-    first, _, rest = content.partition(b"\n")
+    first = content.partition(b"\n")[0]
     if not os.access(path, os.X_OK):
         yield NOT_EXECUTABLE, f"chmod +x {path.name}"
     if first.startswith(b"#!"):
         if first.endswith(b"\r"):
             yield "has Windows line endings (CRLF)", "save it with those of Unix"
     elif content.startswith(codecs.BOM_UTF8):
-        yield BYTE_ORDER_MARK, "save it as UTF-8 without one"
-    elif any(line.startswith(b"#!") for line in rest.split(b"\n", MAX_LINES)):
-        yield "has its #! line below other lines", "make it the first line"
+        yield HAS_BYTE_ORDER_MARK, "save it as UTF-8 without one"
     else:
-        yield "has no #! line", f"make {FIRST_LINE} its first line"
+        yield "does not begin with a #! line", f"make {FIRST_LINE} its first line"
 
 
 def interpreter(path: Path) -> str:

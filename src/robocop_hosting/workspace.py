@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import IO, Callable, Dict, Iterator, Mapping, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import InstallationError
-from aro_robocop_goto_as.process import child, file_lock
+from aro_robocop_goto_as.process import file_lock
 
-from . import tree
+from . import child, tree
 from .errors import HostingError
 
 Environment = Dict[str, str]

@@ -1,12 +1,13 @@
 """RViz shows the walls and all robots, and no display in red, whether it is opened before the simulator or after it."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from desktop import Desktop, Master, Ros
 from waiting import wait_for
 
-from aro_robocop_goto_as.ros.cli.rviz_config import Observed, adapted
-
+CONFIG = Path(__file__).resolve().parents[2] / "rviz" / "robocop.rviz"
 pytestmark = pytest.mark.slow
 TITLE = " - RViz$"
 ERROR, WARNING = (192, 32, 32), (192, 192, 32)  # red, green, blue of names in RViz's Displays panel
@@ -42,10 +43,8 @@ def complete(desktop, parts):
 
 
 def test_rviz_that_was_opened_before_the_simulator_shows_everything(tmp_path):
-    config = tmp_path / "robocop.rviz"
-    config.write_text(adapted(Observed(robot="")))
     with Desktop(tmp_path) as desktop, Master(tmp_path, desktop) as ros:
-        ros.start("rviz", "rviz", "-d", config)
+        ros.start("rviz", "rviz", "-d", CONFIG)
         wait_for(lambda: desktop.window(TITLE) and desktop.canvas(desktop.window(TITLE)), "RViz")
         ros.start("sim", "roslaunch", "aro_robocop_goto_as", "robocop_sim.launch", "moving:=true")
         wait_for(lambda: complete(desktop, {"walls", "robot"}), "walls and robot")
@@ -54,7 +53,7 @@ def test_rviz_that_was_opened_before_the_simulator_shows_everything(tmp_path):
 def test_rviz_that_is_opened_late_shows_everything_of_several_robots(tmp_path):
     with Desktop(tmp_path) as desktop, Ros(tmp_path, desktop, "rviz:=false", "robots:=3") as ros:
         wait_for(lambda: ros.subscriber("/robot_1/scan", "/"), "the server")
-        rviz = ["rosrun", "aro_robocop_goto_as", "robocop_rviz.py", "--wait", "60"]
+        rviz = ["rosrun", "aro_robocop_goto_as", "robocop_rviz.py", "--config", "robots.rviz"]
         ros.start("rviz", "env", "ROS_NAMESPACE=/robot_1", *rviz)
         wait_for(lambda: complete(desktop, {"walls", "robot_1", "robot_2", "robot_3"}), "walls and three robots")
         desktop.quit_by_menu(desktop.window(TITLE))

@@ -88,7 +88,6 @@ def test_the_room_fills_the_scene_of_a_phone_however_it_is_turned(web, browser):
 
 BUTTON_AT = "([x, y]) => document.elementFromPoint(x, y)?.closest('button')?.innerText.trim()"
 KEY_OF = "button => getComputedStyle(button.querySelector('.mantine-Button-label'), '::after').content"
-PHONES = (UPRIGHT, TURNED, (390, 664), (750, 340))  # [pixel] the same of an iPhone 12
 
 
 @pytest.mark.slow
@@ -104,7 +103,7 @@ def test_on_a_phone_the_buttons_that_drive_are_in_reach_and_as_large_as_a_finger
             return False
         return tab.page.evaluate(BUTTON_AT, (box["x"] + box["width"] / 2.0, box["y"] + box["height"] / 2.0)) == label
 
-    for size in PHONES:
+    for size in (UPRIGHT, TURNED):
         tab.turn(size)
         for label in ("Stop", "Forward", "Left", "Back", "Right"):
             wait_for(lambda of=(label, size[1]): is_in_reach(*of), f"{label} is in reach at {size}")
@@ -113,9 +112,8 @@ def test_on_a_phone_the_buttons_that_drive_are_in_reach_and_as_large_as_a_finger
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("size", [size for size in PHONES if size[0] < size[1]])
-def test_a_tab_that_is_chosen_on_a_phone_fills_the_panel(web, browser, size):
-    tab = Tab(browser, web.url, size, touch=True)
+def test_a_tab_that_is_chosen_on_a_phone_fills_the_panel(web, browser):
+    tab = Tab(browser, web.url, UPRIGHT, touch=True)
     tab.wait_for_text(READY)
     tab.page.get_by_role("tab", name="Plots").dispatch_event("click")
     title = tab.page.get_by_role("tabpanel").get_by_text("errors", exact=True)

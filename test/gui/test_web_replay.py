@@ -15,7 +15,7 @@ from tf2_msgs.msg import TFMessage
 from waiting import wait_for
 from web import NoDesktop
 
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("web page"), pytest.mark.timeout(600)]
 

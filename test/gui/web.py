@@ -8,7 +8,7 @@ import subprocess
 from desktop import Ros
 from waiting import DEADLINE, wait_for
 
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 READY = r"stage_4[\s\S]*server\s+ready"  # of simulator and bridge
 REACHED = 0.17  # [m] from the goal: the server's tolerance, the error of a click, and the drift of odometry

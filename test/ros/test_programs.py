@@ -1,17 +1,18 @@
 """The package's programs as ROS starts them: without ./robocop, a display or a master."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from systems import Program
+from command import robocop
+from systems import Program, is_running
 from waiting import DEADLINE, wait_for
 
-from aro_robocop_goto_as.probes.master import running_node
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
 NODES = ("robocop_goto_as.py", "robocop_rviz.py", "robocop_rviz_goto_ac.py", "robocop_sim.py", "robocop_web.py")
@@ -20,12 +21,18 @@ NODES = ("robocop_goto_as.py", "robocop_rviz.py", "robocop_rviz_goto_ac.py", "ro
 @pytest.mark.parametrize("name", sorted(path.name for path in (ROOT / "scripts").glob("*.py")))
 def test_each_program_answers_help_without_a_master(name):
     environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{free_port()}"}
+    environment.pop("ROBOCOP_STATE")  # as without ./robocop
     done = subprocess.run(
         [ROOT / "scripts" / name, "--help"], env=environment, capture_output=True, text=True, timeout=DEADLINE
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert f"usage: rosrun aro_robocop_goto_as {name}" in done.stdout
     assert name not in NODES or len(done.stdout.splitlines()) == 3
+    command = name[len("robocop_") : -len(".py")].replace("_", "-")
+    if name not in NODES and command != "sim-with":
+        options = set(re.findall(r"--[a-z-]+", done.stdout)) - {"--help"}
+        described = set(re.findall(r"--[a-z-]+", robocop(command, "--help").stdout))
+        assert options == described, "./robocop help tells the same, before anything is installed"
 
 
 class Roslaunch(Program):
@@ -64,7 +71,7 @@ def test_a_second_launch_ends_and_the_first_goes_on_until_its_master_ends(roslau
     assert "robocop_sim: a simulator is already running as /robocop_sim on" in second.output
     assert [launched.processes(name) for name in names] == first
     frames = "/robocop_state_publisher"  # ROS's own node has ended, and started again
-    launched.wait_until(lambda: running_node(launched.uri, frames), "the state publisher")
+    launched.wait_until(lambda: is_running(launched.uri, frames), "the state publisher")
     ((simulator,), _, _) = first
 
     os.kill(launched.process.pid, signal.SIGSTOP)  # roslaunch itself would end the simulator, too

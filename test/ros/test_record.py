@@ -10,7 +10,7 @@ import rosbag
 from systems import System
 from waiting import wait_for
 
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 ROOT = Path(__file__).resolve().parents[2]
 RESULT = "/robocop_goto_as/result"

@@ -8,9 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from systems import Program, System
+from systems import Program, System, is_running
 
-from aro_robocop_goto_as.probes.master import running_node, unheard
 from robocop_grading import new
 from robocop_hosting.workspace import compat_folder, places
 
@@ -67,44 +66,43 @@ def contents(package):
     return {path: (path.read_bytes(), path.stat().st_mode) for path in package.rglob("*") if path.is_file()}
 
 
-@pytest.fixture
-def hosted(tmp_path):
-    """Start a package that somebody has made with `robocop new` and filled in."""
-    package, started = tmp_path / "as_taught", []
+def as_taught(folder):
+    """A package that somebody has made with `robocop new` and filled in."""
+    package = folder / "as_taught"
     new.make(package)
     for script, solution in (("robocop_goto_as.py", "base_server"), ("robocop_rviz_goto_ac.py", "base_bridge")):
         (package / "scripts" / script).write_text((SOLUTIONS / f"{solution}.py.in").read_text())
     for file, change in CHANGES.items():
         (package / file).write_text((package / file).read_text().replace(*change))
+    return package
+
+
+def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gazebos_services(tmp_path):
+    package = as_taught(tmp_path)
     before = contents(package)
-
-    def start(*arguments):
-        started.append(Hosted(package, tmp_path, *arguments))
-        return started[-1]
-
-    yield start
-    for system in started:
-        if system.process.poll() is None:
-            assert system.end() == []
-        system.end_all()
+    with Hosted(package, tmp_path) as system:
+        system.wait_until(lambda: "server: " in system.output, "its bridge talks to its server")
+        done = system.call("rosrun", "aro_robocop_goto_as", "robocop_goto.py", "0.3", "0.3")
+        assert (done.returncode, "SUCCEEDED: finished successfully" in done.stdout) == (0, True), (
+            done.stdout + system.output
+        )
+        assert "PARAMETERS" not in system.output
+        assert "world         empty\nrobot         burger\ntransforms    none from odom to the robot" in system.output
+        state, share = places()
+        types = compat_folder(share, state) / "devel" / "lib" / "python3" / "dist-packages"
+        output = system.call(
+            sys.executable, str(NODES / "gazebo_calls.py"), PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}"
+        ).stdout
+        assert system.end() == []
+    expect_gazebos_answers(json.loads(output.splitlines()[-1]))
+    with Hosted(package, tmp_path, "scan_profile:=no_such") as refused:
+        assert refused.process.wait(DEADLINE) == 1, refused.output
+        assert "scan_profile" in refused.output and refused.processes() == []
     assert contents(package) == before, "its author's files were changed"
 
 
-def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gazebos_services(hosted):
-    system = hosted()
-    system.wait_until(lambda: "server: " in system.output, "its bridge talks to its server")
-    done = system.call("rosrun", "aro_robocop_goto_as", "robocop_goto.py", "0.3", "0.3")
-    assert (done.returncode, "SUCCEEDED: finished successfully" in done.stdout) == (0, True), (
-        done.stdout + system.output
-    )
-    assert "PARAMETERS" not in system.output
-    assert "world         empty\nrobot         burger\ntransforms    none from odom to the robot" in system.output
-    state, share = places()
-    types = compat_folder(share, state) / "devel" / "lib" / "python3" / "dist-packages"
-    output = system.call(
-        sys.executable, str(NODES / "gazebo_calls.py"), PYTHONPATH=f"{os.environ['PYTHONPATH']}:{types}"
-    ).stdout
-    answers = json.loads(output.splitlines()[-1])
+def expect_gazebos_answers(answers):
+    """The answers to gazebo_calls.py are those of Gazebo."""
     assert answers.pop("models") == ["ground_plane", "turtlebot3_burger"]
     absent = "model [table] does not exist; there are: ground_plane, turtlebot3_burger"
     assert answers.pop("unknown")[3].startswith(absent) and answers.pop("unknown set") == absent
@@ -131,12 +129,6 @@ def test_a_package_in_the_style_of_the_lab_is_built_and_reaches_a_goal_with_gaze
         "moved by itself": True,
         "time": True,
     }
-
-
-def test_exit_status_is_1_when_the_simulator_refuses_its_arguments(hosted):
-    system = hosted("scan_profile:=no_such")
-    assert system.process.wait(DEADLINE) == 1, system.output
-    assert "scan_profile" in system.output and system.processes() == []
 
 
 MANIFEST = """<package format="2"><name>{}</name><version>0.0.1</version><description>d</description>
@@ -167,23 +159,17 @@ WORKSPACE = {
 }
 
 
-def test_node_with_its_neighbours_messages_ends_and_is_named_below_the_overview(tmp_path):
+def test_node_with_its_neighbours_messages_ends_and_is_named_beside_the_overview(tmp_path):
     for name, text in WORKSPACE.items():
         (tmp_path / "ws" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "ws" / name).write_text(text)
     script = tmp_path / "ws" / "drive" / "scripts" / "drive.py"
     script.chmod(0o755)
     with Hosted(tmp_path / "ws", tmp_path) as system:
-        died, named = "[drive-3] process has died", "drive has ended already; its last messages are above"
-
-        def has_ended():  # before the overview, below which it is named then, or after it
-            above, _, below = system.output.partition("all messages  appear below\n")
-            return named in below if died in above else died in below
-
-        system.wait_until(has_ended, "a node ends, and is named below the overview if it ended before")
-        assert running_node(system.uri, "/gripper"), system.output
-        above, _, below = system.output.partition("all messages  appear below\n")
-        assert (named in below) is (died in above)
+        words = ("[drive-3] process has died", "all messages  appear below\n")
+        system.wait_until(lambda: all(word in system.output for word in words), "node and overview")
+        assert is_running(system.uri, "/gripper"), system.output
+        above = system.output.partition(words[1])[0]
         assert f'File "{script}", line 3' in system.output
         assert "cannot launch node of type [no_such_package/a]" in above
         setup = re.search(r"source \S+/setup.bash --extend", above)[0]
@@ -194,13 +180,11 @@ def test_node_with_its_neighbours_messages_ends_and_is_named_below_the_overview(
         system.end()
 
 
-def test_commands_of_a_turtlebot_2_drive_its_model_and_others_that_no_robot_hears_are_known(tmp_path):
+def test_commands_of_a_turtlebot_2_drive_its_model(tmp_path):
     with System(tmp_path) as system:
         system.start_master()
         arguments = ("_model:=turtlebot2", "_world:=empty", "_drive:=kinematic")
         simulator = system.start("sim", "rosrun", "aro_robocop_goto_as", "robocop_sim.py", *arguments)
-        for topic in ("/cmd_vel_mux/input/navi", "/navi"):
-            twist = ("geometry_msgs/Twist", "{linear: {x: 0.2}}")
-            system.start(topic.replace("/", "_"), "rostopic", "pub", "-r", "10", topic, *twist)
-        system.wait(lambda: unheard(system.uri, twist[0]) == ["/navi"], "its publisher", simulator)
+        twist = ("geometry_msgs/Twist", "{linear: {x: 0.2}}")
+        system.start("driver", "rostopic", "pub", "-r", "10", "/cmd_vel_mux/input/navi", *twist)
         system.wait(lambda: system.latest("/odom")["pose"]["pose"]["position"]["x"] > 0.05, "it drives", simulator)

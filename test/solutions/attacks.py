@@ -1,4 +1,4 @@
-"""Attacks of a submission on the grader: code for the node, which prints SUCCESS for each attack that works."""
+"""Attacks of a submission on the grader: code for the node, which prints SUCCESS, or that it was refused."""
 
 FORK_BOMB = """
 import os
@@ -6,8 +6,12 @@ def bomb():
     while True:
         try:
             os.fork()
-        except OSError:
-            pass
+        except OSError as error:
+            try:
+                os.mkdir('/tmp/told')  # by the first one
+                os.write(1, f'refused {error}'.encode() + bytes([10]))
+            except OSError:
+                pass
 if os.fork() == 0:
     bomb()
 """
@@ -35,12 +39,14 @@ for path in ('/root/.bashrc', '/etc/shadow', PLAN, *glob.glob(os.path.dirname(FO
 """
 KILL_ALL = """
 import os, signal
-for pid in [*range(2, 400), PID]:
-    if pid != os.getpid():
-        try:
-            os.kill(pid, signal.SIGKILL)
-        except OSError:
-            pass
+def kill(pid):
+    try:
+        os.kill(pid, signal.SIGKILL)
+        return f'SUCCESS killed {pid}'
+    except OSError as error:
+        return f'refused {error}'
+own = [int(thread) for thread in os.listdir('/proc/self/task')]
+print(*{kill(pid) for pid in [*range(2, 400), PID] if pid not in own}, sep=chr(10), flush=True)
 """
 ENDLESS = """
 import threading
@@ -87,8 +93,10 @@ import sys
 sys.stdout.write('x' * 50 * 2 ** 20 + chr(27) + '[2J')
 sys.exit(1)
 """
-OWN_ROSLAUNCH = """#!/bin/sh
-echo '/own: [[[['
+BUILD_LEAVES = """
+import subprocess
+subprocess.Popen(['setsid', 'sh', '-c', 'sleep 600; true', FOLDER])  # has CMake's pipe, too
+print('left running')
 """
 SPY = """
 import glob, os, re, threading

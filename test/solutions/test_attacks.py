@@ -10,6 +10,7 @@ from pathlib import Path
 import attacks
 import pytest
 from graded import PLAN, SHARE, STATE, recorded, sandbox
+from processes import processes_mentioning
 from right_solutions import RIGHT
 
 from aro_robocop_goto_as.errors import RobocopError
@@ -32,7 +33,11 @@ def attacked(code, folder):
     return run, lines
 
 
-@pytest.mark.parametrize("name", ["FORK_BOMB", "FULL_DISK", "READ", "KILL_ALL", "ENDLESS"])
+REFUSED = {"FORK_BOMB": 1, "FULL_DISK": 5, "READ": 4, "KILL_ALL": 1, "ENDLESS": 0}  # lines that say so
+ENDS = {"FORK_BOMB": "it started more than 64 processes", "ENDLESS": "processor time"}  # of nodes that are ended
+
+
+@pytest.mark.parametrize("name", REFUSED)
 def test_attack_fails_and_the_submission_is_still_graded(name, tmp_path, monkeypatch):
     if name == "ENDLESS":  # which ends with its processor time
         monkeypatch.setattr(runner, "MAX_CPU_TIME", 20)
@@ -42,8 +47,10 @@ def test_attack_fails_and_the_submission_is_still_graded(name, tmp_path, monkeyp
     run, lines = attacked(getattr(attacks, name), tmp_path / "mine")
     assert run.problem == ""
     refused = [line for line in lines if line.startswith("refused")]
-    assert len(refused) == {"FULL_DISK": 5, "READ": 4}.get(name, 0), refused
-    assert "already_there" in run.records or not run.records["start"].up, "neither judged nor recorded as not started"
+    assert len(refused) == REFUSED[name], lines
+    assert ("already_there" in run.records) == run.records["start"].up == (name not in ENDS)
+    ends = [end.reason for record in run.records.values() for end in record.node_ends]
+    assert len(ends) == (name in ENDS) and all(ENDS[name] in reason for reason in ends), ends
 
 
 @pytest.mark.parametrize("name", attacks.LIES)
@@ -113,120 +120,69 @@ def prepared(package, workshop):
     return prepare_submission(str(package), SHARE, STATE, workshop, sandbox())
 
 
-def test_build_and_launch_file_cannot_reach_anything_outside_the_sandbox(package, tmp_path, monkeypatch):
-    neighbour = tmp_path / "neighbour.py"
+def build_attack(package, code, then=""):
+    """Have the package's build run some code."""
+    name = f"attack_{len(code)}.py"
+    (package / name).write_text(code)
+    with open(package / "CMakeLists.txt", "a") as text:
+        text.write(f"execute_process(COMMAND python3 ${{CMAKE_CURRENT_SOURCE_DIR}}/{name} {then})\n")
+    return name
+
+
+@pytest.fixture(scope="module")
+def attacking(tmp_path_factory):
+    """What is prepared of a package whose build and launch file attack, and the build's log."""
+    folder = tmp_path_factory.mktemp("attacking")
+    package, neighbour = (
+        folder / os.fsdecode(b'O\'Neil & b (1) #3, "$HOME" $(touch x) \xf8\xe9zen'),
+        folder / "neighbour.py",
+    )
+    new.make(package)
     neighbour.write_text("secret")
-    monkeypatch.setenv("SECRET_OF_THE_TEACHER", "42")
     (package / "link").symlink_to(neighbour)
-    with socket.socket() as outside:
+    (package / "backup").mkdir()
+    (package / "backup" / "robocop_goto_as.py").write_text("unfinished")
+    with socket.socket() as outside, pytest.MonkeyPatch.context() as patch:
         outside.bind(("127.0.0.1", 0))
         outside.listen()
+        patch.setenv("SECRET_OF_THE_TEACHER", "42")
         names = f"PLAN, NEIGHBOUR, PORT = {str(PLAN)!r}, {str(neighbour)!r}, {outside.getsockname()[1]}\n"
-        (package / "attack.py").write_text(names + attacks.BUILD)
-        with open(package / "CMakeLists.txt", "a") as text:
-            text.write("execute_process(COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/attack.py)\n")
+        attack = build_attack(package, names + attacks.BUILD)
+        build_attack(package, f"FOLDER = {str(folder)!r}{attacks.BUILD_LEAVES}")
         launch = package / "launch" / "robocop_goto_as.launch"
-        command = "sh -c &quot;python3 $(find aro_robocop_goto_as)/attack.py&quot;"
-        launch.write_text(f'<launch><param name="loot" command="{command}"/></launch>')
-        submission = prepared(package, tmp_path / "workshop")
-    log = next((tmp_path / "workshop").glob("*/build.log")).read_text()
+        more = (
+            '<node pkg="tf2_ros" type="static_transform_publisher" name="map" args="0 0 0 0 0 0 map odom"/>\n'
+            f'<param name="loot" command="sh -c &quot;python3 $(find aro_robocop_goto_as)/{attack}&quot;"/></launch>'
+        )
+        text = launch.read_text().replace("output=", "respawn='true' output=", 1)
+        launch.write_text(text.replace("</launch>", more))
+        submission = prepared(package, folder / "workshop")
+    (log,) = (folder / "workshop").glob("*/build.log")
+    return submission, log.read_text(), folder
+
+
+together = pytest.mark.xdist_group("attacking")  # it is built once
+
+
+@together
+def test_build_and_launch_file_cannot_reach_anything_outside_the_sandbox(attacking):
+    submission, log, _ = attacking
     assert set(submission.parameters) == {"/loot"}
     for words in (log, submission.parameters["/loot"]):
         assert sum(line.startswith("refused ") for line in words.splitlines()) == 9, words
         assert "SUCCESS" not in words, words
 
 
-@pytest.mark.parametrize(
-    "name, make",
-    [
-        ("scripts/robocop_goto_as.py", "ln -s SECRET"),
-        ("launch/robocop_goto_as.launch", "ln -s SECRET"),
-        ("launch/robocop_goto_as.launch", "mkfifo"),
-    ],
-)
-def test_link_or_pipe_made_by_the_build_is_refused_without_following_or_waiting_for_it(name, make, package, tmp_path):
-    secret, place = tmp_path / "secret.py", f"${{CMAKE_CURRENT_SOURCE_DIR}}/{name}"
-    secret.write_text((package / "scripts" / "robocop_goto_as.py").read_text())
-    with open(package / "CMakeLists.txt", "a") as text:
-        for command in (f"rm {place}", f"{make.replace('SECRET', str(secret))} {place}"):
-            text.write(f"execute_process(COMMAND {command})\n")
-    with pytest.raises(RobocopError, match="expected an ordinary file"):
-        prepared(package, tmp_path / "workshop")
+@together
+def test_build_is_over_when_its_command_has_ended_and_what_it_leaves_running_ends_too(attacking):
+    _, log, folder = attacking
+    assert "left running" in log
+    assert processes_mentioning(folder) == []
 
 
-@pytest.mark.parametrize("place", ["elsewhere.py", "lab/elsewhere.py"])
-def test_script_that_is_a_link_out_of_the_package_or_with_an_absolute_path_is_named(place, package, tmp_path):
-    script = package / "scripts" / "robocop_goto_as.py"
-    script.rename(tmp_path / place)
-    script.symlink_to(tmp_path / place)
-    (package / "scripts" / "same.py").symlink_to("robocop_rviz_goto_ac.py")
-    with pytest.raises(RobocopError, match=f"^scripts/robocop_goto_as.py -> .*/{place}: links .* are not followed"):
-        prepared(package, tmp_path / "workshop")
-
-
-def build_attack(package, code, then=""):
-    """Have the package's build run some code."""
-    (package / "attack.py").write_text(code)
-    with open(package / "CMakeLists.txt", "a") as text:
-        text.write(f"execute_process(COMMAND python3 ${{CMAKE_CURRENT_SOURCE_DIR}}/attack.py {then})\n")
-
-
-def test_build_is_over_when_its_command_has_ended_whatever_it_leaves_running(package, tmp_path):
-    build_attack(package, "import subprocess\nsubprocess.Popen(['setsid', 'sleep', '600'])  # has CMake's pipe, too")
-    assert [script.part for script in prepared(package, tmp_path / "workshop").scripts] == ["server", "bridge"]
-
-
-def test_build_that_nests_its_folder_is_killed_with_a_reason(package, tmp_path):
-    build_attack(package, attacks.BUILD_NESTED)
-    with pytest.raises(GradingError, match="catkin_make was ended: it made more than 100 nested folders"):
-        prepared(package, tmp_path / "workshop")
-    subprocess.run(["rm", "-rf", tmp_path / "workshop"], check=True)
-
-
-def test_what_a_build_made_of_its_log_and_its_sources_does_not_stop_the_next_one(package, tmp_path):
-    workshop = tmp_path / "workshop"
-    prepared(package, workshop)
-    (folder,) = (path for path in workshop.iterdir() if path.is_dir())
-    (folder / "build.log").unlink()
-    (folder / "build.log" / "file").mkdir(parents=True)
-    (folder / "src").rename(folder / "elsewhere")
-    (folder / "src").symlink_to(folder / "elsewhere")
-    assert {script.part for script in prepared(package, workshop).scripts} == {"server", "bridge"}
-
-
-def test_what_an_interrupted_build_has_left_is_removed_by_the_next_one(package, tmp_path, monkeypatch):
-    def interrupted(folder, *_):
-        (folder / "half").write_text("a message's class that is cut short")
-        raise KeyboardInterrupt
-
-    workshop = tmp_path / "workshop"
-    with monkeypatch.context() as during, pytest.raises(KeyboardInterrupt):
-        during.setattr(build, "make", interrupted)
-        prepared(package, workshop)
-    assert len(list(workshop.glob("*/half"))) == 1
-    prepared(package, workshop)
-    assert list(workshop.glob("*/half")) == [] and len(list(workshop.iterdir())) == 1
-
-
-def test_endless_line_of_a_build_is_cut(package, tmp_path):
-    build_attack(package, attacks.BUILD_LONG_LINE, "COMMAND_ERROR_IS_FATAL ANY")
-    with pytest.raises(RobocopError) as caught:
-        prepared(package, tmp_path / "workshop")
-    assert "can't be built" in str(caught.value) and len(str(caught.value)) < 6_000
-
-
-def test_package_in_a_folder_of_any_name_is_built(package, tmp_path):
-    odd = package.rename(tmp_path / os.fsdecode(b'O\'Neil & b (1) #3, "$HOME" $(touch x) \xf8\xe9zen'))
-    assert [script.part for script in prepared(odd, tmp_path / "workshop").scripts] == ["server", "bridge"]
-
-
-def test_grade_says_which_scripts_are_started_and_what_the_launch_file_asks_for_in_vain(package, tmp_path):
-    (package / "backup").mkdir()
-    (package / "backup" / "robocop_goto_as.py").write_text("unfinished")
-    launch = package / "launch" / "robocop_goto_as.launch"
-    helper = '<node pkg="tf2_ros" type="static_transform_publisher" name="map" args="0 0 0 0 0 0 map odom"/>\n</launch>'
-    launch.write_text(launch.read_text().replace("</launch>", helper).replace("output=", "respawn='true' output=", 1))
-    submission = prepared(package, tmp_path / "workshop")
+@together
+def test_grade_says_which_scripts_are_started_and_what_the_launch_file_asks_for_in_vain(attacking):
+    submission, _, _ = attacking
     file = "launch/robocop_goto_as.launch, line"
     assert submission.files == [
         f"server: scripts/robocop_goto_as.py, started by {file} 8",
@@ -240,11 +196,57 @@ def test_grade_says_which_scripts_are_started_and_what_the_launch_file_asks_for_
     ]
 
 
-def test_own_roslaunch_of_a_package_is_not_used(package, tmp_path):
-    (package / "roslaunch").write_text(attacks.OWN_ROSLAUNCH)
-    (package / "roslaunch").chmod(0o755)
-    hook = package / "path.sh"
-    hook.write_text(f"export PATH={package}:$PATH\n")
+def test_link_made_by_the_build_is_refused_without_following_it(package, tmp_path):
+    secret, place = tmp_path / "secret.py", "${CMAKE_CURRENT_SOURCE_DIR}/scripts/robocop_goto_as.py"
+    secret.write_text((package / "scripts" / "robocop_goto_as.py").read_text())
     with open(package / "CMakeLists.txt", "a") as text:
-        text.write("catkin_add_env_hooks(path SHELLS sh DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})\n")
-    assert "/own" not in prepared(package, tmp_path / "workshop").parameters
+        for command in (f"rm {place}", f"ln -s {secret} {place}"):
+            text.write(f"execute_process(COMMAND {command})\n")
+    with pytest.raises(RobocopError, match="expected an ordinary file"):
+        prepared(package, tmp_path / "workshop")
+
+
+def test_script_that_is_a_link_out_of_the_package_is_named(package, tmp_path):
+    script = package / "scripts" / "robocop_goto_as.py"
+    script.rename(tmp_path / "elsewhere.py")
+    script.symlink_to(tmp_path / "elsewhere.py")
+    (package / "scripts" / "same.py").symlink_to("robocop_rviz_goto_ac.py")
+    with pytest.raises(RobocopError, match="^scripts/robocop_goto_as.py -> .*/elsewhere.py: links .* are not followed"):
+        prepared(package, tmp_path / "workshop")
+
+
+def test_build_that_nests_its_folder_is_killed_with_a_reason(package, tmp_path):
+    build_attack(package, attacks.BUILD_NESTED)
+    with pytest.raises(GradingError, match="catkin_make was ended: it made more than 100 nested folders"):
+        prepared(package, tmp_path / "workshop")
+    subprocess.run(["rm", "-rf", tmp_path / "workshop"], check=True)
+
+
+def test_what_an_interrupted_build_or_one_that_changed_its_log_and_sources_has_left_is_replaced(
+    package, tmp_path, monkeypatch
+):
+    def interrupted(folder, *_):
+        (folder / "half").write_text("a message's class that is cut short")
+        raise KeyboardInterrupt
+
+    workshop = tmp_path / "workshop"
+    with monkeypatch.context() as during, pytest.raises(KeyboardInterrupt):
+        during.setattr(build, "make", interrupted)
+        prepared(package, workshop)
+    (folder,) = (path.parent for path in workshop.glob("*/half"))
+    prepared(package, workshop)
+    assert not (folder / "half").exists() and list(workshop.iterdir()) == [folder]
+    (folder / "build.log").unlink()
+    (folder / "build.log" / "file").mkdir(parents=True)
+    (folder / "src").rename(folder / "elsewhere")
+    (folder / "src").symlink_to(folder / "elsewhere")
+    assert [script.part for script in prepared(package, workshop).scripts] == ["server", "bridge"]
+
+
+def test_endless_line_of_a_build_is_cut(package, tmp_path):
+    build_attack(package, attacks.BUILD_LONG_LINE, "COMMAND_ERROR_IS_FATAL ANY")
+    with pytest.raises(RobocopError, match="can't be built") as caught:
+        prepared(package, tmp_path / "workshop")
+    assert len(str(caught.value)) < 6_000
+    (log,) = (tmp_path / "workshop").glob("*/build.log")
+    assert log.stat().st_size > 50 * 2**20, "the line has been written"

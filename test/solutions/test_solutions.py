@@ -109,7 +109,7 @@ def test_time_of_rospy_is_that_of_the_clock_message_whose_callback_runs(tmp_path
     text = text.replace(begin, f"{begin}        rospy.Subscriber('/clock', Clock, compare_clocks)\n", 1)
     assert text.count("compare_clocks") == 2
     grade = graded("compares_clocks", text, tmp_path)
-    assert grade.points == 5.0, grade.failed()
+    assert grade.failed() == []
 
 
 @pytest.mark.slow
@@ -175,30 +175,6 @@ def test_grading_interrupted_twice_leaves_no_folders_or_processes_behind(tmp_pat
     assert "Traceback" not in (tmp_path / "output").read_text()
     assert list(scratch.iterdir()) == []
     assert processes_mentioning(scratch) == []
-
-
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        (["SOLUTION", "--plan", "/dev/zero"], "/dev/zero: expected an ordinary file"),
-        (["SOLUTION", "--report", "/proc/here"], "the report can't be written to /proc/here: "),
-        (["/usr/bin/env"], "/usr/bin/env: expected a submission outside /usr"),
-        pytest.param(["/"], "/: expected a submission outside /usr", marks=pytest.mark.slow),
-    ],
-)
-@pytest.mark.parametrize(
-    "program", ["robocop_grade.py", pytest.param("robocop_grade_class.py", marks=pytest.mark.slow)]
-)
-def test_what_can_not_work_is_refused_before_anything_starts(program, arguments, words, tmp_path):
-    (tmp_path / "robocop_goto_as.py").write_text(RIGHT["base_server"])
-    of_class = program == "robocop_grade_class.py"
-    path = {"SOLUTION": str(tmp_path if of_class else tmp_path / "robocop_goto_as.py")}
-    path.update({"/usr/bin/env": "/usr/bin"} if of_class else {})
-    words = words.replace("/usr/bin/env", "/usr/bin") if of_class else words
-    arguments = [path.get(argument, argument) for argument in arguments]
-    done = command(program, *arguments)
-    assert done.returncode == (4 if arguments[0] in ("/", "/usr/bin/env") and not of_class else 2)
-    assert words in done.stderr and done.stderr.count("\n") == 1
 
 
 def test_links_in_a_circle_are_refused(tmp_path):

@@ -1,12 +1,10 @@
 """A wall clock that advances only while somebody waits, and the owner of a running simulator without ROS."""
 
 import queue
-from typing import Callable, List, Set, Tuple
 
 from support import ORIGIN, model_named, world_named
 
 from aro_robocop_goto_as.robot.model import RobotSpec
-from aro_robocop_goto_as.simulation.agenda import Due
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.jobs import WallClock
 from aro_robocop_goto_as.simulation.lockstep import ControllerId
@@ -20,7 +18,7 @@ class FakeClock(WallClock):
 
     def __init__(self):
         self.time = 100.0
-        self._scheduled: List[Tuple[float, Callable[[], object]]] = []
+        self._scheduled = []
 
     def at(self, delay, action):
         """Schedule an action, such as posting a job, after a delay [s]."""
@@ -56,11 +54,11 @@ class Owner:
         p = SimParams.of(drive="kinematic", cmd_vel_timeout=0.0, **params)
         self.simulator = make_simulator(p, world_named("empty"), [RobotSpec("", model_named("burger"), ORIGIN)])
         self.clock, self.end = FakeClock(), end
-        self.nodes: Set[str] = set()  # that are connected to the robot's topics
-        self.seen: List[Tuple[int, Due]] = []  # stamp [ns] and what was due
-        self.events: List[object] = []
-        self.on_tick: Callable[[int], object] = lambda stamp_ns: None  # called at each control tick
-        self.is_stopped: Callable[[], bool] = lambda: self.simulator.time >= self.end
+        self.nodes = set()  # that are connected to the robot's topics
+        self.seen = []  # stamp [ns] and what was due
+        self.events = []
+        self.on_tick = lambda stamp_ns: None  # called at each control tick
+        self.is_stopped = lambda: self.simulator.time >= self.end
         self.running = RunningSimulator(self.simulator, self.clock, lambda: self.is_stopped())
 
     def post(self, delay, job):
@@ -77,9 +75,9 @@ class Owner:
                 self.events.append(now.changes)
             if now.clock:
                 self.events.append("clock repeated")
-            if now.tick is not None:
-                self.events += [("late", now.tick.late)] if now.tick.late else []
-                self.events += [("gone", controller) for controller in now.tick.gone]
+            if now.outcome is not None:
+                self.events += [("late", now.outcome.late)] if now.outcome.late else []
+                self.events += [("gone", controller) for controller in now.outcome.gone]
 
     def _connected(self):
         return {ControllerId(0, node) for node in self.nodes}

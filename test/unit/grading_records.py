@@ -9,6 +9,7 @@ from support import ROOT
 
 from robocop_grading import record as rec
 from robocop_grading.checks import Failed
+from robocop_grading.classroom.results import StoredGrade
 from robocop_grading.grades import CheckOutcome, CheckResult, Grade
 from robocop_grading.handout import Limits
 from robocop_grading.judge import judge
@@ -18,6 +19,7 @@ from robocop_grading.report.write import write
 
 PLAN_FILE = Path(ROOT, "config", "grading.yaml")
 PLAN = load(PLAN_FILE)
+CANCEL = next(check.points for check in PLAN.checks if check.name == "cancel")
 LIMITS = Limits()
 GOAL = rec.SentGoal("g", 1.0, 1.0, 0.0, "SUCCEEDED")
 
@@ -91,3 +93,18 @@ def keep_grade(results, grade, digest=None):
     with tempfile.TemporaryDirectory() as folder:
         write(grade, PLAN, {}, Path(folder))
         results.keep(grade.name, f"digest of {grade.name}" if digest is None else digest, Path(folder), 3.0)
+
+
+# A class: Anna is judged, Ben handed in no bridge, nothing of Carl is gradable.
+GROUP = (
+    StoredGrade(
+        "=anna",
+        (
+            judged("cancel", "server", 0.0, "<cause> at 1.5"),
+            judged("action_server", "server", 0.5),
+            judged("goal_frame", "bridge", 1.0, extra=True),
+        ),
+    ),
+    StoredGrade("ben", (judged("cancel", "server", 0.0, "<cause> at -3"),), ("=cmd",)),
+    StoredGrade("carl", (), ("nothing to grade",)),
+)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from aro_robocop_goto_as.floor_plan.occupancy import _reachable
 from aro_robocop_goto_as.geometry import rotation_matrix
-from aro_robocop_goto_as.raycast.occupancy import _reachable
 from aro_robocop_goto_as.shapes import Box, Plane
 
 BURGER_RADIUS = 0.105  # [m]

@@ -10,7 +10,6 @@ from support import ROOT
 
 from aro_robocop_goto_as import compiled
 from aro_robocop_goto_as.errors import InstallationError
-from aro_robocop_goto_as.raycast import caster_library
 
 NAME = compiled.file_name("caster")
 SOURCES = {
@@ -52,7 +51,7 @@ def test_library_that_is_missing_or_of_other_sources_is_refused_with_the_command
         command = ["cc", "-shared", "-fPIC", "-x", "c", "-", "-o", str(tmp_path / NAME)]
         subprocess.run(command, input=source, text=True, check=True)
     with pytest.raises(InstallationError, match=message):
-        compiled.load("caster", caster_library.VERSION)
+        compiled.load("caster", "raycast/caster.c")
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from command import ROOT, environment, make_program, robocop
 from systems import Process
 from waiting import wait_for
 
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 pytestmark = pytest.mark.timeout(300)  # it runs whole commands
 

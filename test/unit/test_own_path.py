@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from support import ROOT
 
-from aro_robocop_goto_as.cli import system_commands
+from aro_robocop_goto_as.cli import commands
 from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.own_path import expect_own
 from aro_robocop_goto_as.process.signals import ENDING_SIGNALS
@@ -35,7 +35,7 @@ def program(main, *words):
 
 
 def record(path, monkeypatch):
-    system_commands.record([str(path)])
+    commands.record([str(path)])
 
 
 GRADE = program(cli.main, "class/novak", "--report", "PATH")

@@ -2,26 +2,21 @@
 
 import os
 import re
-from pathlib import Path
 
 import pytest
 import yaml
+from param_docs import CHECKOUT, NODES, documents
 from support import ROOT
 
 from aro_robocop_goto_as.errors import ParameterError
-from aro_robocop_goto_as.param_docs import NODES, documents
 from aro_robocop_goto_as.param_loading import declared, from_dict
 from aro_robocop_goto_as.ros.client.params import BridgeParams
 from aro_robocop_goto_as.simulation.params import SimParams
 
-CHECKOUT = Path(ROOT)
 
-
-@pytest.mark.parametrize("path", documents(CHECKOUT), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", documents(), ids=lambda path: path.name)
 def test_what_documents_the_parameters_is_up_to_date(path):
-    assert path.read_text() == documents(CHECKOUT)[path], (
-        "run ./robocop shell python3 -m aro_robocop_goto_as.param_docs"
-    )
+    assert path.read_text() == documents()[path], "run ./robocop shell python3 test/unit/param_docs.py"
 
 
 @pytest.mark.parametrize("node", NODES, ids=lambda node: node.node)

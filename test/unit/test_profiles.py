@@ -1,7 +1,6 @@
 """The profiles in config/profiles: limits, scanners, topics and cameras of Gazebo's and of real robots."""
 
 import os
-from typing import Callable
 
 import numpy as np
 import pytest
@@ -13,9 +12,7 @@ from aro_robocop_goto_as.param_loading import from_dict
 from aro_robocop_goto_as.robot.base_controller import limits_from
 from aro_robocop_goto_as.sensors.imu import FORCE
 from aro_robocop_goto_as.simulation.params import SimParams
-from aro_robocop_goto_as.simulation.simulator import Simulator
 
-Make = Callable[..., Simulator]
 TICK = 0.001533981  # [rad] of a TurtleBot3's encoders
 
 

@@ -3,6 +3,7 @@
 import fcntl
 import os
 import pty
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -12,7 +13,7 @@ import pytest
 from command import ROOT, SETUP_TIMEOUT, environment, make_program, robocop
 from fake_index import builds, source_release
 
-from aro_robocop_goto_as.process.ports import free_port
+from robocop_hosting.ports import free_port
 
 pytestmark = pytest.mark.timeout(300)  # it builds workspaces
 
@@ -58,13 +59,10 @@ def test_script_that_is_started_by_sh_runs_in_bash():
     assert done.stdout.startswith("aro_robocop_goto_as ")
 
 
-@pytest.mark.parametrize(
-    ("word", "status", "reason"),
-    [("no_such", 127, "No such file or directory"), ("/etc/passwd", 126, "Permission denied")],
-)
-def test_shell_tells_why_a_program_can_not_be_started(word, status, reason):
+@pytest.mark.parametrize(("word", "status"), [("no_such", 127), ("/etc/passwd", 126)])
+def test_shell_tells_that_a_program_can_not_be_started(word, status):
     done = robocop("shell", word)
-    assert (done.returncode, done.stderr) == (status, f"robocop: {word}: {reason}\n")
+    assert done.returncode == status and word in done.stderr and done.stderr.count("\n") <= 2
 
 
 def test_other_python_installations_are_ignored(tmp_path):
@@ -113,15 +111,14 @@ def in_copy(root, *arguments, **settings):
 def on_system(tmp_path):
     """A function: a dry run of a command on a machine where the content of some files is another one."""
 
-    def dry_run_on(contents, *options, command="setup", **settings):
+    def dry_run_on(contents, *options, command=("setup",), **settings):
         binds = []
         for number, (path, content) in enumerate(contents.items()):
             make_program(tmp_path / str(number), content)
             binds += ["--ro-bind", str(tmp_path / str(number)), os.path.realpath(path)]
-        command = ["bwrap", "--dev-bind", "/", "/", *binds, *options, str(ROOT / "robocop"), command]
-        return subprocess.run(
-            command, env=environment(ROBOCOP_DRY_RUN="1", **settings), capture_output=True, text=True, timeout=60.0
-        )
+        command = ["bwrap", "--dev-bind", "/", "/", *binds, *options, str(ROOT / "robocop"), *command]
+        settings = {"ROBOCOP_DRY_RUN": "1", **settings}
+        return subprocess.run(command, env=environment(**settings), capture_output=True, text=True, timeout=60.0)
 
     return dry_run_on
 
@@ -134,10 +131,8 @@ MINT = {"/etc/os-release": 'ID=linuxmint\nID_LIKE="ubuntu debian"\nPRETTY_NAME="
     "contents, reason",
     [
         (FEDORA, "Fedora Linux 41 has no packages of ROS 1; it needs Debian or Ubuntu, or ROS 1 in /opt/ros"),
-        ({"/etc/os-release": ""}, "this Linux has no packages of ROS 1"),
+        ({"/etc/os-release": ""}, "this system has no packages of ROS 1"),
         ({"/usr/bin/getconf": "#!/bin/sh\necho 32\n"}, "this is a 32-bit system; it needs a 64-bit one"),
-        ({"/usr/bin/python3": "#!/bin/sh\necho 3.7\n"}, "/usr/bin/python3 is Python 3.7; it needs 3.8"),
-        ({"/usr/bin/uname": "#!/bin/sh\necho FreeBSD\n"}, "this is FreeBSD; it needs Linux"),
     ],
 )
 def test_unsupported_system_is_refused_at_once_with_the_reason(on_system, contents, reason):
@@ -146,7 +141,7 @@ def test_unsupported_system_is_refused_at_once_with_the_reason(on_system, conten
     assert done.stderr.startswith(f"robocop: this system is not supported: {reason}")
 
 
-@pytest.mark.parametrize("contents", [{}, MINT, {"/usr/bin/python3": "#!/bin/sh\necho 3.13\n"}])
+@pytest.mark.parametrize("contents", [{}, MINT])
 def test_supported_system_is_not_refused(on_system, contents):
     assert on_system(contents).returncode == 0
 
@@ -197,106 +192,52 @@ def test_doctor_names_what_is_missing_with_the_command_and_installs_nothing(chec
     assert not (checkout / ".robocop").exists() and not (checkout.parent / "cache").exists()
 
 
-def test_where_nothing_can_be_written_a_remedy_is_named(checkout):
-    (checkout / "install" / "deb-packages" / "run.txt").write_text("bash\n")
-    command = ["bwrap", "--dev-bind", "/", "/", "--ro-bind", str(checkout.parent), str(checkout.parent)]
-    settings = environment(HOME=str(checkout.parent / "home"))
-    settings.pop("XDG_CACHE_HOME", None)
-    done = subprocess.run(
-        [*command, str(checkout / "robocop"), "setup"], env=settings, capture_output=True, text=True, timeout=60.0
-    )
-    assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr.startswith(f"robocop: neither {checkout} nor {checkout.parent}/home/.cache/robocop/")
-    assert done.stderr.endswith(" can be written; set XDG_CACHE_HOME to a folder that can, or make room on the disk\n")
+@pytest.fixture
+def without_python(on_system, tmp_path):
+    """A function that calls ./robocop where there is no Python."""
+    mounts = usr_bin_without(" ".join(path.name for path in Path("/usr/bin").glob("python3*")), tmp_path)
+    return lambda *words: on_system({}, *mounts, command=words, PATH="/usr/bin:/bin", ROBOCOP_DRY_RUN="")
 
 
-def test_a_full_disk_is_named_instead_of_the_log_on_it(checkout):
-    root = checkout.rename(checkout.parent / "plain")
-    (root / "install" / "deb-packages" / "run.txt").write_text("bash\n")
-    command = ["bwrap", "--dev-bind", "/", "/", "--size", "1000000", "--tmpfs", f"{root}/.robocop"]
-    done = subprocess.run(
-        [*command, str(root / "robocop"), "setup"], env=environment(), capture_output=True, text=True, timeout=300.0
-    )
-    assert done.returncode == 1
-    assert (
-        f"robocop: the virtual environment could not be created: the disk of {root}/.robocop has only 0 MB left\n"
-        in done.stderr
-    )
-
-
-ANSWERS, FAILS = "exit 0", "echo no daemon >&2; exit 1"
-
-
-@pytest.mark.parametrize(
-    "engines, shown",
-    [
-        ({"docker": ANSWERS, "podman": ANSWERS}, "docker build --tag robocop --label "),
-        ({"docker": FAILS, "podman": ANSWERS, "buildah": ANSWERS}, "podman build --tag robocop --label "),
-        ({"buildah": ANSWERS}, "buildah build --tag robocop --label "),
-        ({}, "robocop: image: this needs docker, podman or buildah; on Debian and Ubuntu: apt-get install podman"),
-        ({"docker": FAILS}, "robocop: image: docker is installed, but it does not answer: no daemon"),
-    ],
-)
-def test_image_is_built_by_the_first_engine_that_answers(on_system, tmp_path, engines, shown):
-    mounts = usr_bin_without("docker podman buildah", tmp_path)
-    for name, script in engines.items():
-        make_program(tmp_path / "links" / name, f"#!/bin/sh\n{script}\n")
-    done = on_system({}, *mounts, command="image", PATH="/usr/bin:/bin")
-    assert (done.stdout + done.stderr).startswith(shown)
-    assert done.returncode == (0 if " build " in shown else 1)
+def test_help_of_every_command_is_printed_where_nothing_is_installed(without_python):
+    text = without_python("help").stdout
+    commands = set(re.findall(r"(?m)^  ([a-z][a-z-]*)", text))
+    assert {"run", "goto", "grade", "grade-class", "new", "bench", "shell", "test"} < commands
+    for command in commands:
+        for words in ((command, "--help"), ("help", command)):
+            done = without_python(*words)
+            assert (done.returncode, done.stderr) == (0, "")
+            assert done.stdout.startswith(f"  {command} ") and done.stdout in text
 
 
 @pytest.mark.parametrize(
     "command, status, message",
     [
-        ("doctor", 1, "nothing is installed yet, not even /usr/bin/python3\n"),
-        ("run", 0, "nothing is installed yet, not even /usr/bin/python3\n"),
+        ("doctor", 1, "nothing is installed yet, not even /usr/bin/python3; ./robocop setup does that\n"),
         ("tset", 2, "unknown command 'tset' (./robocop help lists them)\n"),
-        ("image", 1, "image: this needs python3\n"),
     ],
 )
-def test_without_python_commands_install_nothing_in_a_dry_run(on_system, tmp_path, command, status, message):
-    without = usr_bin_without(" ".join(path.name for path in Path("/usr/bin").glob("python3*")), tmp_path)
-    done = on_system({}, *without, command=command, PATH="/usr/bin:/bin")
-    assert (done.returncode, done.stdout) == (status, "")
-    assert message in done.stderr
+def test_without_python_nothing_is_installed_for_a_question(without_python, command, status, message):
+    done = without_python(command)
+    assert (done.returncode, done.stdout, done.stderr) == (status, "", f"robocop: {message}")
 
 
-# As apt 2.6 prints it with APT::Status-Fd, shortened; it fails once, as without package lists.
-APT = """#!/bin/sh
-case "$*" in *" update") touch {0}/updated; exit ;; esac
-[ -e {0}/updated ] || exit 100
-cat <<END
-Need to get 8791 kB of archives.
-dlstatus:2:13.8379:Retrieving file 2 of 2
-dlstatus:2:15.4224:Retrieving file 2 of 2
-pmstatus:dpkg-exec:0.0000:Running dpkg
-pmstatus:libfoo:amd64:33.3333:Installing libfoo:amd64
-pmstatus:no-such-package:66.6667:Configuring: 5.0000: no-such-package
-END
-exit 1
-"""
-TOLD = """\
-robocop: installation failed; trying again with updated package lists
-robocop: Need to get 8791 kB of archives.
-robocop: downloaded 10 %
-robocop: installed 30 %
-robocop: installed 60 %
-"""
+APT = '#!/bin/sh\necho "$@"\ntest "$1" = update\n'
 
 
-def test_installation_of_debian_packages_tells_sizes_progress_and_its_log(checkout):
+def test_apt_shows_what_it_does_and_a_failure_is_told_with_what_to_run_as_root(checkout):
     root = checkout.rename(checkout.parent / "plain")
     (root / "install" / "deb-packages" / "run.txt").write_text("no-such-package\n")
     programs = root / ".robocop" / "venv" / "bin"
     programs.mkdir(parents=True)
-    make_program(programs / "apt-get", APT.format(programs))
+    make_program(programs / "apt-get", APT)
     make_program(programs / "sudo", '#!/bin/sh\nexec "$@"\n')
     done = robocop("setup", root=root)
-    log = root / ".robocop" / "log" / "apt.log"
-    assert done.returncode == 1 and TOLD in done.stderr
-    assert done.stderr.startswith("robocop: installing 1 Debian package") and f"apt's output: {log}\n" in done.stderr
-    assert "status:" not in log.read_text()
+    assert (done.returncode, done.stdout) == (1, "")
+    said = done.stderr.splitlines()
+    assert said[0] == "robocop: installing Debian packages, which can take some minutes: no-such-package"
+    assert said[1] == "update" and said[2].startswith("install -y ") and said[2].endswith(" no-such-package")
+    assert said[3].endswith(f" As root, run: apt-get update && apt-get {said[2]}") and len(said) == 4
 
 
 def test_what_is_complete_is_used_while_another_set_up_of_the_checkout_is_running():
@@ -342,7 +283,7 @@ def test_a_checkout_on_a_disk_without_locks_is_set_up_with_a_word_about_it(quick
     subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, source], check=True, timeout=SETUP_TIMEOUT)
     done = quick("shell", "true", LD_PRELOAD=str(library))
     assert done.returncode == 0 and "robocop: building the workspace" in done.stderr, done.stderr
-    assert "no file can be locked on" in done.stderr and "waiting" not in done.stderr
+    assert "its disk has no locks: going on without" in done.stderr
 
 
 @pytest.fixture
@@ -367,7 +308,7 @@ def test_a_build_takes_the_workspace_away_from_nothing_that_runs(quick, user):
     assert done.stdout == f"{(state / 'workspace').resolve()}/devel\n" and user.workspace.is_dir(), done.stderr
     assert (state / "workspace").resolve() != user.workspace
     done = quick("clean")
-    assert done.returncode == 1 and f"  process {user.pid}: sh -c echo $ROBOCOP_WS; read line" in done.stderr
+    assert done.returncode == 1 and "clean would break what runs in this checkout: end it" in done.stderr
 
     user.communicate("")
     action.write_text("two")
@@ -398,25 +339,22 @@ def test_run_is_no_obstacle_to_its_own_set_up(quick, checkout):
         assert (done.returncode, done.stderr.count("requirements-web.txt")) == (0, 1), done.stderr
 
 
-def test_packages_are_replaced_when_nothing_runs_that_uses_them(quick, user, checkout):
+def test_packages_are_not_replaced_below_what_uses_them(quick, user, checkout):
     root = user.workspace.parent.parent
     (root / "install" / "requirements.txt").write_text("another==1\n")
-    setup = [str(root / "robocop"), "setup"]
-    with subprocess.Popen(setup, env=environment(), stderr=subprocess.PIPE, text=True) as waiting:
-        said = waiting.stderr.readline() + waiting.stderr.readline()
-        assert "another version of Python packages would break what still runs in this checkout; waiting" in said
-        assert f"  process {user.pid}: sh -c " in said
-        assert waiting.poll() is None
-        user.communicate("")
-        assert "installing the Python packages of requirements.txt" in waiting.communicate(timeout=SETUP_TIMEOUT)[1]
+    done = quick("setup")
+    assert done.returncode == 1
+    assert "another version of Python packages would break what runs in this checkout: end it" in done.stderr
+    user.communicate("")
+    assert "installing the Python packages of requirements.txt" in quick("setup").stderr
 
 
 @pytest.mark.slow
 def test_pybullet_that_can_not_be_built_is_reported_with_the_end_of_the_log(checkout, index):
     done = in_copy(checkout, "setup", BUILD_FAILS="1", **index)
     assert done.returncode == 1
-    announced = done.stderr.index("PyPI has no wheel of pybullet for Python 3.")
-    assert announced < done.stderr.index("this takes about ") < done.stderr.index("error: no such thing")
+    announced = done.stderr.index("pip found no wheel of pybullet; building one")
+    assert announced < done.stderr.index("takes about ") < done.stderr.index("error: no such thing")
     assert "robocop: pip failed. It needs a package index" in done.stderr
 
 

@@ -1,1 +1,1 @@
-"""./robocop: its commands, set-up and look at the system, with nothing but the standard library."""
+"""./robocop: the arguments of its commands, and a report on the system, before anything is installed."""

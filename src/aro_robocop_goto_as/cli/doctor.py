@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Dict, List, Tuple
 
 from ..errors import MasterError
-from ..names import robocop
-from ..probes import master, settings, x_display
+from ..names import ROOT, SIMULATOR, absolute, robocop
+from ..probes import x_display
 
 PYTHON = "/usr/bin/python3"
 PACKAGES = ("rospy", "numpy", "pybullet")
@@ -69,19 +69,25 @@ def versions(python: str) -> Dict[str, str]:
 
 def master_row() -> Tuple[str, str]:
     """What answers at ROS_MASTER_URI, in words, and what to do about a problem; empty if there is no problem."""
-    uri = master.master_uri()
+    try:
+        import rosgraph
+
+        from ..ros import graph, settings
+    except ImportError:
+        return "not asked, as ROS is not installed", ""
+    uri = rosgraph.get_master_uri()
     problem = settings.problem()
     if problem:
         return "not asked, as these settings are of no use", problem
     try:
-        if not master.master_answers(uri):
+        if not graph.master_answers():
             return f"none at {uri}", ""
-        state = master.running_simulator(uri) or master.no_simulator(uri) or "no simulator is running"
-        commanded = master.publishers(uri, "cmd_vel").items()
+        simulator = graph.running_node(absolute("", SIMULATOR), "a simulator")
+        state = simulator or graph.no_simulator() or "no simulator is running"
+        commanded = graph.running_publishers("cmd_vel").items()
         several = [f"{topic} is published by {' and '.join(nodes)}" for topic, nodes in commanded if len(nodes) > 1]
-        unheard = [f"no robot listens to {topic}" for topic in master.unheard(uri, "geometry_msgs/Twist")]
-        return "; ".join([f"answers at {uri}", state, *several, *unheard]), ""
-    except MasterError as error:
+        return "; ".join([f"answers at {uri}", state, *several]), ""
+    except (OSError, rosgraph.MasterException, MasterError) as error:
         return "does not answer", str(error)
 
 
@@ -142,16 +148,17 @@ def _problems(unsupported: str, missing: Dict[str, str], complete: bool) -> List
     return problems
 
 
-def report(script: str, checkout: str, state: str) -> int:
-    """Print the report, and return the exit status, 0 if nothing is missing; calls the script `robocop` back."""
+def report(unsupported: str, *lists: str) -> int:
+    """Print the report, and return the exit status, 0 if nothing is missing.
 
-    def ask(*words: str) -> str:
-        return " ".join(subprocess.run([script, *words], stdout=subprocess.PIPE, text=True).stdout.split())
-
+    unsupported: why this system is not supported, or empty; lists: "LIST=PACKAGE..." for each list in
+    install/deb-packages/, with those of its packages that are not installed.
+    """
     ros = ros_in_opt()
-    missing = {name: ask("_missing", name) for name in OPTIONAL_LISTS}
-    required = {"modules": missing_modules()} if ros else {"run": ask("_missing", "run")}
-    rows, problems = examine(checkout, state, ros, ask("_unsupported"), {**required, **missing})
+    missing = dict(entry.split("=", 1) for entry in lists)
+    if ros:
+        missing.update(run="", modules=missing_modules())
+    rows, problems = examine(str(ROOT), os.environ["ROBOCOP_STATE"], ros, unsupported, missing)
     for name, value in rows:
         print(f"{name:11} {value}")
     print(f"\nnothing is missing: {robocop()} run starts the lab" if not problems else "\nmissing or wrong:")

@@ -42,9 +42,7 @@ class GotoParams:
     min_linear_velocity: float = live(
         0.03, MIN_SPEED, MAX_LINEAR, "[m/s] near the goal, so that it is reached; acceleration starts below it"
     )
-    max_angular_velocity: float = live(
-        1.0, MIN_SPEED, MAX_ANGULAR, "[rad/s] halved for the rest of a goal each time that the robot has to turn back"
-    )
+    max_angular_velocity: float = live(1.0, MIN_SPEED, MAX_ANGULAR, "[rad/s] of a turn in place")
     min_angular_velocity: float = live(0.3, MIN_SPEED, MAX_ANGULAR, "[rad/s] at small angles, so that a turn ends")
     linear_acceleration: float = live(0.5, MIN_ACCELERATION, MAX_LINEAR, "[m/s^2] of the commanded velocity")
     angular_acceleration: float = live(3.0, MIN_ACCELERATION, MAX_ANGULAR, "[rad/s^2] of the commanded velocity")

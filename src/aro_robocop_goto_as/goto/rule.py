@@ -2,7 +2,7 @@
 
 import enum
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Optional, Tuple, Union
 
 from ..geometry import STANDSTILL, Pose2D, Twist2D, wrap_angle
@@ -76,42 +76,18 @@ def errors_to(goal: Goal, pose: Pose2D) -> Errors:
     return Errors(distance, angle)
 
 
-@dataclass(frozen=True)
-class Turning:
-    """The direction of a goal's newest rotation (1.0: counter-clockwise), and how often it has been reversed.
-
-    With late data or commands, as over a slow network, a robot turns too far each time; at full speed it would turn to
-    and fro for ever. Halving the speed after each reversal ends that.
-    """
-
-    direction: float = 0.0
-    reversals: int = 0
-
-    def limit(self, params: GotoParams) -> float:
-        """The maximum angular velocity [rad/s] now; at least min_angular_velocity."""
-        return max(params.min_angular_velocity, math.ldexp(params.max_angular_velocity, -self.reversals))
-
-    def after(self, decision: Decision) -> "Turning":
-        """The turning after one more decision."""
-        if not isinstance(decision, Rotate):
-            return self
-        direction = math.copysign(1.0, decision.twist.w)
-        return Turning(direction, self.reversals + (direction * self.direction < 0.0))
-
-
-def decide(pose: Pose2D, clearance: float, goal: Goal, params: GotoParams, turning: Turning = Turning()) -> Decision:
+def decide(pose: Pose2D, clearance: float, goal: Goal, params: GotoParams) -> Decision:
     """The handout's rule; `clearance` [m] is the distance to the nearest obstacle ahead, +inf for none.
 
     The goal is reached within position_tolerance. Otherwise rotate in place while the angle error exceeds
-    angle_tolerance, then move forward, unless an obstacle ahead is nearer than obstacle_distance. `turning`: the
-    goal's rotations so far.
+    angle_tolerance, then move forward, unless an obstacle ahead is nearer than obstacle_distance.
     """
     errors = errors_to(goal, pose)
     if errors.position < params.position_tolerance:
         return EndGoal(errors, Outcome.REACHED)
     if abs(errors.angle) > params.angle_tolerance:
         gain = params.angular_gain
-        speed = _clamp(gain * abs(errors.angle), params.min_angular_velocity, turning.limit(params))
+        speed = _clamp(gain * abs(errors.angle), params.min_angular_velocity, params.max_angular_velocity)
         return Rotate(errors, Twist2D(0.0, math.copysign(speed, errors.angle)))
     if clearance < params.obstacle_distance:
         return EndGoal(errors, Outcome.OBSTACLE)
@@ -142,13 +118,6 @@ def limit_acceleration(previous: Twist2D, decision: Decision, dt: float, params:
     return Twist2D(approach(previous.v, decision.twist.v, params.linear_acceleration * dt), 0.0)
 
 
-def has_jumped(before: Errors, errors: Errors, params: GotoParams) -> bool:
-    """Return whether the errors grew more than driving for data_timeout explains: the odometry was reset."""
-    driven = params.position_tolerance + params.max_linear_velocity * params.data_timeout
-    turned = params.angle_tolerance + params.max_angular_velocity * params.data_timeout
-    return errors.position > before.position + driven or abs(errors.angle) > abs(before.angle) + turned
-
-
 @dataclass(frozen=True)
 class LastProgress:
     """The errors when the robot last made progress, and that time [s]."""
@@ -173,8 +142,6 @@ class Pursuit:
     """What a goal's next control period needs to know of the periods before."""
 
     twist: Twist2D = STANDSTILL  # commanded in the newest period
-    errors: Optional[Errors] = None  # of the newest period
-    turning: Turning = Turning()
     progress: Optional[LastProgress] = None
 
     def without_progress(self, now: float) -> float:
@@ -186,13 +153,7 @@ def step(
     before: Pursuit, pose: Pose2D, clearance: float, goal: Goal, now: float, params: GotoParams
 ) -> Tuple[Decision, Pursuit]:
     """One control period at a time [s]: the rule's decision, and the pursuit with the velocity to command."""
-    errors = errors_to(goal, pose)
-    if before.errors is not None and has_jumped(before.errors, errors, params):  # start anew, as after a reset
-        before = replace(before, turning=Turning(), progress=None)
-    decision = decide(pose, clearance, goal, params, before.turning)
-    turning, last = before.turning.after(decision), before.progress
-    if turning.limit(params) < before.turning.limit(params):  # reversed, and slower now: its time starts anew
-        last = None
-    progress = track_progress(last, errors, now, params.stuck_distance, params.stuck_angle)
+    decision = decide(pose, clearance, goal, params)
+    progress = track_progress(before.progress, decision.errors, now, params.stuck_distance, params.stuck_angle)
     twist = limit_acceleration(before.twist, decision, 1.0 / params.control_rate, params)
-    return decision, Pursuit(twist, errors, turning, progress)
+    return decision, Pursuit(twist, progress)

@@ -1,21 +1,18 @@
-/* Ideal differential drives as discs that walls and other discs block; kinematic.py describes the model.
- *
- * The structures are mirrored in kinematic.py; ARO_FLEET_VERSION changes with them.
- */
+/* Ideal differential drives as discs that walls and other discs block; kinematic.py describes the model. */
 
 #include <math.h>
 #include <stddef.h>
 
-#include "../raycast/grid.h"
+#include "../raycast/tiles.h"
 #include "../robot/fleet.h"
 
 #define MARGIN 1e-6 /* [m] kept free, so that rounding never moves a disc into a wall */
-#define NEARBY 1.0  /* [m] the range within which walls are looked up in a grid */
+#define NEARBY 1.0  /* [m] the range within which walls are looked up in tiles */
 
 /* A world's cross-sections at all heights of a robot's body, in one plane. */
 struct body_section {
     const double *segments;  /* (n_segments, 2, 2) [m] */
-    const struct grid *grid; /* of the segments */
+    const struct tiles *tiles; /* of the segments */
     int64_t n_circles;
     const double *circles; /* (n_circles, 3) x, y, radius [m] */
 };
@@ -31,14 +28,15 @@ struct kinematic {
 };
 
 /* A displacement of a disc, and the fraction of it that is free as far as is known. */
-struct motion {
+struct move {
     double radius, x, y; /* [m] of the disc, its centre */
     double dx, dy;       /* [m] */
     double length;       /* [m] */
     double free;         /* 0 to 1 */
 };
 
-/* The tiles from low to high [m] along an axis; none, first > last, outside of the grid and where a pose has overflowed. */
+/* The tiles from low to high [m] along an axis. None, with first > last: outside of all tiles, or for a pose that has
+ * overflowed. */
 static void tiles_between(double low, double high, double side, int64_t count, int64_t *first, int64_t *last)
 {
     double from = floor(low / side), to = floor(high / side);
@@ -50,16 +48,16 @@ static void tiles_between(double low, double high, double side, int64_t count, i
 static void visit_near(const struct body_section *section, double x, double y, double half,
                        void (*visit)(void *context, const double *segment), void *context)
 {
-    const struct grid *grid = section->grid;
+    const struct tiles *tiles = section->tiles;
     int64_t row, last_row, column, last_column, k;
-    tiles_between(x - half - grid->x, x + half - grid->x, grid->side, grid->columns, &column, &last_column);
-    tiles_between(y - half - grid->y, y + half - grid->y, grid->side, grid->rows, &row, &last_row);
-    for (k = 0; k < grid->n_everywhere; k++)
-        visit(context, section->segments + 4 * (int64_t)grid->everywhere[k]);
+    tiles_between(x - half - tiles->x, x + half - tiles->x, tiles->side, tiles->columns, &column, &last_column);
+    tiles_between(y - half - tiles->y, y + half - tiles->y, tiles->side, tiles->rows, &row, &last_row);
+    for (k = 0; k < tiles->n_everywhere; k++)
+        visit(context, section->segments + 4 * (int64_t)tiles->everywhere[k]);
     for (; row <= last_row && column <= last_column; row++) {
-        const int32_t *starts = grid->starts + row * grid->columns;
+        const int32_t *starts = tiles->starts + row * tiles->columns;
         for (k = starts[column]; k < starts[last_column + 1]; k++)
-            visit(context, section->segments + 4 * (int64_t)grid->members[k]);
+            visit(context, section->segments + 4 * (int64_t)tiles->members[k]);
     }
 }
 
@@ -90,77 +88,77 @@ static double gap(const struct kinematic *kin, int64_t robot, double length)
     return nearest.distance - radius;
 }
 
-/* Stop the motion where the disc's centre first enters a circle; it may leave one freely. */
-static void stop_at_circle(struct motion *motion, double x, double y, double radius)
+/* Stop the move where the disc's centre first enters a circle; it may leave one freely. */
+static void stop_at_circle(struct move *move, double x, double y, double radius)
 {
-    double off_x = x - motion->x, off_y = y - motion->y, squared, towards, root, fraction;
-    towards = off_x * motion->dx + off_y * motion->dy;
-    squared = motion->dx * motion->dx + motion->dy * motion->dy;
+    double off_x = x - move->x, off_y = y - move->y, squared, towards, root, fraction;
+    towards = off_x * move->dx + off_y * move->dy;
+    squared = move->dx * move->dx + move->dy * move->dy;
     root = towards * towards - squared * ((off_x * off_x + off_y * off_y) - radius * radius);
     if (!(squared > 0.0 && root > 0.0 && towards > 0.0))
         return;
     fraction = (towards - sqrt(root)) / squared;
-    motion->free = fmin(motion->free, fmax(0.0, fraction));
+    move->free = fmin(move->free, fmax(0.0, fraction));
 }
 
-/* Stop the motion where the disc first touches a segment. */
+/* Stop the move where the disc first touches a segment. */
 static void stop_at_segment(void *context, const double *segment)
 {
-    struct motion *motion = context;
+    struct move *move = context;
     double along_x = segment[2] - segment[0], along_y = segment[3] - segment[1], length = hypot(along_x, along_y);
-    double off_x = motion->x - segment[0], off_y = motion->y - segment[1], distance, approach, fraction, position;
-    stop_at_circle(motion, segment[0], segment[1], motion->radius);
-    stop_at_circle(motion, segment[2], segment[3], motion->radius);
+    double off_x = move->x - segment[0], off_y = move->y - segment[1], distance, approach, fraction, position;
+    stop_at_circle(move, segment[0], segment[1], move->radius);
+    stop_at_circle(move, segment[2], segment[3], move->radius);
     if (length == 0.0)
         return;
     along_x /= length;
     along_y /= length;
     distance = -off_x * along_y + off_y * along_x;
-    approach = -(motion->dy * along_x - motion->dx * along_y) * (distance >= 0.0 ? 1.0 : -1.0);
+    approach = -(move->dy * along_x - move->dx * along_y) * (distance >= 0.0 ? 1.0 : -1.0);
     if (!(approach > 0.0))
         return;
-    fraction = fmax((fabs(distance) - motion->radius) / approach, 0.0);
-    position = (off_x + fraction * motion->dx) * along_x + (off_y + fraction * motion->dy) * along_y;
+    fraction = fmax((fabs(distance) - move->radius) / approach, 0.0);
+    position = (off_x + fraction * move->dx) * along_x + (off_y + fraction * move->dy) * along_y;
     if (fraction < 1.0 && position >= 0.0 && position <= length)
-        motion->free = fmin(motion->free, fraction);
+        move->free = fmin(move->free, fraction);
 }
 
 /* Keep the contact margin before what was met; the fraction that was free `before` is the most. */
-static void keep_margin(struct motion *motion, double before)
+static void keep_margin(struct move *move, double before)
 {
-    if (motion->free < 1.0)
-        motion->free = fmax(0.0, motion->free - MARGIN / motion->length);
-    motion->free = fmin(motion->free, before);
+    if (move->free < 1.0)
+        move->free = fmax(0.0, move->free - MARGIN / move->length);
+    move->free = fmin(move->free, before);
 }
 
-/* Stop a robot's motion at walls, and renew its free travel. */
-static void stop_at_walls(struct kinematic *kin, int64_t robot, struct motion *motion)
+/* Stop a robot's move at walls, and renew its free travel. */
+static void stop_at_walls(struct kinematic *kin, int64_t robot, struct move *move)
 {
     const struct body_section *section = kin->sections + kin->section_of[robot];
-    double room = gap(kin, robot, motion->length) - MARGIN, before = motion->free;
+    double room = gap(kin, robot, move->length) - MARGIN, before = move->free;
     const double *circle;
-    kin->free_travel[robot] = room - motion->length;
-    if (room >= motion->length)
+    kin->free_travel[robot] = room - move->length;
+    if (room >= move->length)
         return;
-    motion->free = 1.0;
+    move->free = 1.0;
     for (circle = section->circles; circle < section->circles + 3 * section->n_circles; circle += 3)
-        stop_at_circle(motion, circle[0], circle[1], circle[2] + motion->radius);
-    visit_near(section, motion->x, motion->y, motion->radius + motion->length + NEARBY, stop_at_segment, motion);
-    keep_margin(motion, before);
+        stop_at_circle(move, circle[0], circle[1], circle[2] + move->radius);
+    visit_near(section, move->x, move->y, move->radius + move->length + NEARBY, stop_at_segment, move);
+    keep_margin(move, before);
 }
 
-/* Stop a robot's motion at the other robots. */
-static void stop_at_robots(const struct kinematic *kin, int64_t robot, struct motion *motion)
+/* Stop a robot's move at the other robots. */
+static void stop_at_robots(const struct kinematic *kin, int64_t robot, struct move *move)
 {
     const struct fleet *fleet = kin->fleet;
-    double before = motion->free;
+    double before = move->free;
     int64_t k;
-    motion->free = 1.0;
+    move->free = 1.0;
     for (k = 0; k < fleet->n; k++)
         if (k != robot)
-            stop_at_circle(motion, fleet->poses[3 * k], fleet->poses[3 * k + 1],
-                           fleet->radii[k] + (motion->radius + MARGIN));
-    keep_margin(motion, before);
+            stop_at_circle(move, fleet->poses[3 * k], fleet->poses[3 * k + 1],
+                           fleet->radii[k] + (move->radius + MARGIN));
+    keep_margin(move, before);
 }
 
 /* Velocity v [m/s], w [rad/s] of a robot whose wheels turn as they are asked to and that nothing blocks. */
@@ -216,20 +214,20 @@ static void move(struct kinematic *kin, double dt)
         fleet->twists[2 * i] = v;
         fleet->twists[2 * i + 1] = w;
         if (v != 0.0) {
-            struct motion motion = {fleet->radii[i], pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
-            aro_arc(pose[2], v * dt, w * dt, &motion.dx, &motion.dy);
+            struct move move = {fleet->radii[i], pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
+            aro_arc(pose[2], v * dt, w * dt, &move.dx, &move.dy);
             kin->free_travel[i] -= fabs(v * dt); /* no chord is longer than its arc */
             if (kin->free_travel[i] < 0.0 || kin->crowded[i]) {
-                motion.length = hypot(motion.dx, motion.dy);
+                move.length = hypot(move.dx, move.dy);
                 if (kin->free_travel[i] < 0.0)
-                    stop_at_walls(kin, i, &motion);
+                    stop_at_walls(kin, i, &move);
                 if (kin->crowded[i])
-                    stop_at_robots(kin, i, &motion);
+                    stop_at_robots(kin, i, &move);
             }
-            pose[0] += motion.free * motion.dx;
-            pose[1] += motion.free * motion.dy;
-            if (motion.free < 1.0) {
-                fleet->twists[2 * i] = v * motion.free;
+            pose[0] += move.free * move.dx;
+            pose[1] += move.free * move.dy;
+            if (move.free < 1.0) {
+                fleet->twists[2 * i] = v * move.free;
                 kin->blocked[i] = 1;
             }
         }
@@ -258,7 +256,7 @@ void aro_kinematic_push(struct kinematic *kin, double travelled)
     for (i = 0; i < fleet->n; i++) {
         const struct body_section *section = kin->sections + kin->section_of[i];
         double *pose = fleet->poses + 3 * i, deepest = 0.0, away = 0.0;
-        struct motion motion = {fleet->radii[i], pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
+        struct move move = {fleet->radii[i], pose[0], pose[1], 0.0, 0.0, 0.0, 1.0};
         kin->free_travel[i] -= travelled;
         if (kin->free_travel[i] >= 0.0)
             continue;
@@ -269,20 +267,20 @@ void aro_kinematic_push(struct kinematic *kin, double travelled)
             if (depth > deepest) {
                 deepest = depth;
                 away = distance;
-                motion.dx = dx;
-                motion.dy = dy;
+                move.dx = dx;
+                move.dy = dy;
             }
         }
         if (!(deepest > 0.0 && away > 0.0))
             continue;
-        motion.dx *= deepest / away;
-        motion.dy *= deepest / away;
-        motion.length = deepest;
-        stop_at_walls(kin, i, &motion);
-        stop_at_robots(kin, i, &motion);
+        move.dx *= deepest / away;
+        move.dy *= deepest / away;
+        move.length = deepest;
+        stop_at_walls(kin, i, &move);
+        stop_at_robots(kin, i, &move);
         kin->separation = 0.0;
-        pose[0] += motion.free * motion.dx;
-        pose[1] += motion.free * motion.dy;
+        pose[0] += move.free * move.dx;
+        pose[1] += move.free * move.dy;
         kin->blocked[i] = 1;
     }
 }

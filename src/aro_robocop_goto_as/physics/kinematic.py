@@ -12,38 +12,17 @@ from typing import Callable, Sequence, Tuple
 
 import numpy as np
 
-from ..compiled import address, members
+from ..compiled import address, structure
 from ..geometry import Pose2D, Pose3D, quaternion_from_rpy
-from ..raycast.caster_library import GridStruct
 from ..raycast.cross_section import CrossSection
-from ..raycast.grid_index import Tiles
-from ..raycast.obstacle_distance import body_heights
-from ..robot.fleet import Fleet, FleetStruct, library
+from ..raycast.tiles import Tiles
+from ..robot.fleet import Fleet, library
 from ..robot.model import BodyState
 from ..world.model import World
 from ..world.scripted_motion import moving
 
-
-class _BodySectionStruct(ctypes.Structure):
-    """`struct body_section` of kinematic.c."""
-
-    _fields_ = [
-        ("segments", ctypes.c_void_p),
-        ("grid", ctypes.POINTER(GridStruct)),
-        ("n_circles", ctypes.c_int64),
-        ("circles", ctypes.c_void_p),
-    ]
-
-
-class _KinematicStruct(ctypes.Structure):
-    """`struct kinematic` of kinematic.c."""
-
-    _fields_ = [
-        ("fleet", ctypes.POINTER(FleetStruct)),
-        ("sections", ctypes.POINTER(_BodySectionStruct)),
-        *members(ctypes.c_void_p, "section_of free_travel blocked crowded"),
-        ("separation", ctypes.c_double),
-    ]
+_BodySectionStruct = structure("physics/kinematic.c", "body_section")
+_KinematicStruct = structure("physics/kinematic.c", "kinematic")
 
 
 class _BodySection:
@@ -64,7 +43,7 @@ class _BodySection:
         self.move(time)
         self.struct = _BodySectionStruct(
             address("segments", self._segments, (None, 2, 2)),
-            ctypes.pointer(self._tiles.struct),
+            ctypes.addressof(self._tiles.struct),
             len(self._circles),
             address("circles", self._circles, (None, 3)),
         )
@@ -77,13 +56,13 @@ class KinematicEngine:
         """`rate` [Hz] of the steps."""
         n = len(fleet)
         self.fleet = fleet
-        heights = [body_heights(model) for model in fleet.models]
+        heights = [model.body_heights() for model in fleet.models]
         self._heights = sorted(set(heights))
         self._section_of = np.array([self._heights.index(of_one) for of_one in heights], dtype=np.int64)
         self._free_travel, self._blocked, self._crowded = np.zeros(n), np.zeros(n, np.uint8), np.zeros(n, np.uint8)
         self._library = library()
         self._struct = _KinematicStruct(
-            ctypes.pointer(fleet.struct),
+            ctypes.addressof(fleet.struct),
             None,
             address("section_of", self._section_of, (n,), np.int64),
             address("free_travel", self._free_travel, (n,)),
@@ -98,7 +77,7 @@ class KinematicEngine:
         """Replace the world by another one, with its moving obstacles as they are at a time [s]."""
         self._sections = [_BodySection(world, heights, time) for heights in self._heights]
         self._structs = (_BodySectionStruct * len(self._sections))(*(section.struct for section in self._sections))
-        self._struct.sections = self._structs
+        self._struct.sections = ctypes.addressof(self._structs)
         self._free_travel[:] = 0.0
 
     def update_fleet(self) -> None:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 from typing import Optional, Tuple
 
+NO_XLIB = 3  # exit status
 TIMEOUT = 5  # [s, wall] the alarm kills the program, which may be waiting inside Xlib
 
 
@@ -18,7 +19,7 @@ def screen_size() -> Optional[Tuple[int, int]]:
     """Width and height of the screen [pixel]; None if no X server answers."""
     if not os.environ.get("DISPLAY"):
         return None
-    done = subprocess.run([sys.executable, "-IS", __file__], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    done = _look()
     if done.returncode != 0:
         return None
     width, height = done.stdout.split()
@@ -26,14 +27,21 @@ def screen_size() -> Optional[Tuple[int, int]]:
 
 
 def answers() -> bool:
-    """Return whether windows can be opened."""
-    return screen_size() is not None
+    """Return whether windows can be opened; without Xlib, which RViz brings along, whether there is a DISPLAY."""
+    return bool(os.environ.get("DISPLAY")) and _look().returncode in (0, NO_XLIB)
+
+
+def _look() -> "subprocess.CompletedProcess[bytes]":
+    return subprocess.run([sys.executable, "-IS", __file__], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
 
 
 def main() -> None:
     """Open the display, and print the size of its screen."""
     signal.alarm(TIMEOUT)
-    x11 = ctypes.CDLL("libX11.so.6")
+    try:
+        x11 = ctypes.CDLL("libX11.so.6")
+    except OSError:
+        sys.exit(NO_XLIB)
     x11.XOpenDisplay.restype = ctypes.c_void_p
     display = ctypes.c_void_p(x11.XOpenDisplay(None))
     if not display:

@@ -1,1 +1,1 @@
-"""Operating system processes: how programs start, children, signals, orphaned descendants, free ports."""
+"""Operating system processes: how programs start, signals, locks of files."""

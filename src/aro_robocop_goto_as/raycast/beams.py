@@ -7,12 +7,14 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from ..compiled import address
-from .caster_library import BeamPlaneStruct, BeamSceneStruct, BeamsStruct, load
+from ..compiled import address, structure
+from .caster_library import load
 from .cross_section import NO_CIRCLES, CrossSection
 
 TOLERANCE = 1e-9  # [rad] as in caster.c
 NO_OWNERS = np.zeros(0, np.int64)
+
+_Beams, _BeamPlane, _BeamScene = (structure("raycast/caster.c", name) for name in ("beams", "beam_plane", "beam_scene"))
 
 
 class BeamPlane:
@@ -22,7 +24,7 @@ class BeamPlane:
         """Bodies (b, [x, y, radius]) [m], each in the frame of the robot that owners (b,) names by its index."""
         self.section, self.bodies, self.owners = section, bodies, owners
         self._tiles, self._moved_bodies = section.tiles, np.empty_like(bodies)  # the structure points to them
-        self.struct = BeamPlaneStruct(
+        self.struct = _BeamPlane(
             len(section.segments),
             len(section.circles),
             len(bodies),
@@ -31,7 +33,7 @@ class BeamPlane:
             address("bodies", bodies, (None, 3)),
             address("owners", owners, (len(bodies),), np.int64),
             address("moved_bodies", self._moved_bodies, (len(bodies), 3)),
-            None if section.tiles is None else ctypes.pointer(section.tiles.struct),
+            None if section.tiles is None else ctypes.addressof(section.tiles.struct),
         )
 
 
@@ -49,14 +51,14 @@ class BeamScene:
         count = len(self._plane_of)
         self.footprints, self._mounts = footprints, mounts
         self._planes = list(planes)
-        self._plane_structs = (BeamPlaneStruct * len(planes))(*(plane.struct for plane in planes))
-        struct = BeamSceneStruct(
+        self._plane_structs = (_BeamPlane * len(planes))(*(plane.struct for plane in planes))
+        struct = _BeamScene(
             count,
             len(planes),
             address("footprints", self.footprints, (count, 3)),
             address("mounts", mounts, (count, 3)),
             address("plane_of", self._plane_of, (count,), np.int64),
-            self._plane_structs,
+            ctypes.addressof(self._plane_structs),
         )
         self._as_parameter_ = ctypes.pointer(struct)  # ctypes passes this, and a call keeps the scene alive
 
@@ -74,7 +76,7 @@ class Beams:
         angles = [angle_min + increment * i for i in range(samples)]
         # Not NumPy's sine and cosine: their last bits depend on the processor's vector instructions.
         self._dx, self._dy = (np.array([function(angle) for angle in angles]) for function in (math.cos, math.sin))
-        struct = BeamsStruct(
+        struct = _Beams(
             angle_min,
             1.0 / increment,
             (samples - 1) * increment + 2.0 * TOLERANCE,

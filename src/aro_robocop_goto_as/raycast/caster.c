@@ -1,19 +1,18 @@
 /* Exact distances along the beams of planar sensors to segments, circles and other robots.
  *
- * A shape is compared only with the beams between the bearings of its two edges. In a grid, only the segments in tiles
- * that beams pass through are compared. Each distance depends on one beam and one shape only, and a beam's result is
- * their minimum, so results depend neither on the order of the shapes nor on which other sensors are cast.
- *
- * The structures are mirrored in caster_library.py; ARO_CASTER_VERSION changes with them.
+ * A shape is compared only with the beams between the bearings of its two edges. Of segments that are listed in tiles,
+ * only those are compared whose tiles a beam passes through. Each distance depends on one beam and one shape only, and a
+ * beam's result is their minimum, so results depend neither on the order of the shapes nor on which other sensors are
+ * cast.
  */
 
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#include "grid.h"
+#include "tiles.h"
 
-#define ARO_CASTER_VERSION 7
+#define ARO_CASTER_VERSION 7   /* changes with each structure and function of the library that Python uses */
 #define TURN 6.283185307179586 /* [rad] */
 #define TOLERANCE 1e-9         /* [rad] a beam this close to a shape's edge hits it: none slips between two walls */
 #define ROUGH 2e-5             /* [rad] the bearings between which beams are compared with a circle are wider by this */
@@ -42,7 +41,7 @@ struct beam_plane {
     const double *bodies;   /* (n_bodies, 3) x, y, radius [m] of robots' circles, each in its robot's frame */
     const int64_t *owners;  /* (n_bodies,) the robot of each */
     double *moved_bodies;   /* (n_bodies, 3) in the world, written by aro_cast */
-    struct grid *grid;      /* of the segments; NULL, or the sensor is outside of it: compare all of them */
+    struct tiles *tiles;    /* of the segments; NULL, or the sensor is outside of them: compare all segments */
 };
 
 struct beam_scene {
@@ -185,16 +184,16 @@ static void cast_circle(const struct scan *scan, const double *circle)
     }
 }
 
-static void cast_tile(const struct scan *scan, const struct beam_plane *plane, struct grid *grid, int64_t tile)
+static void cast_tile(const struct scan *scan, const struct beam_plane *plane, struct tiles *tiles, int64_t tile)
 {
     int32_t k;
-    if (grid->tile_marks[tile] == grid->mark)
+    if (tiles->tile_marks[tile] == tiles->mark)
         return;
-    grid->tile_marks[tile] = grid->mark;
-    for (k = grid->starts[tile]; k < grid->starts[tile + 1]; k++) {
-        int32_t segment = grid->members[k];
-        if (grid->segment_marks[segment] != grid->mark) {
-            grid->segment_marks[segment] = grid->mark;
+    tiles->tile_marks[tile] = tiles->mark;
+    for (k = tiles->starts[tile]; k < tiles->starts[tile + 1]; k++) {
+        int32_t segment = tiles->members[k];
+        if (tiles->segment_marks[segment] != tiles->mark) {
+            tiles->segment_marks[segment] = tiles->mark;
             cast_segment(scan, plane->segments + 4 * (int64_t)segment);
         }
     }
@@ -206,76 +205,77 @@ static int64_t within(double place, int64_t count)
 }
 
 /* Cast the tiles along one beam, in order, until it has hit something nearer than the next tile. */
-static void walk(const struct scan *scan, const struct beam_plane *plane, struct grid *grid, double x, double y,
+static void walk(const struct scan *scan, const struct beam_plane *plane, struct tiles *tiles, double x, double y,
                  double enter, int64_t beam)
 {
     const double *nearest = scan->nearest + beam;
     double ux = scan->c * scan->beams->dx[beam] - scan->s * scan->beams->dy[beam];
     double uy = scan->s * scan->beams->dx[beam] + scan->c * scan->beams->dy[beam];
     double per_column = 1.0 / fabs(ux), per_row = 1.0 / fabs(uy); /* path length per tile; infinite along an axis */
-    double leave = scan->max_range / grid->side, to_column, to_row;
+    double leave = scan->max_range / tiles->side, to_column, to_row;
     int64_t column, row, step_column = ux > 0.0 ? 1 : -1, step_row = uy > 0.0 ? 1 : -1;
 
-    column = within(x + enter * ux, grid->columns);
-    row = within(y + enter * uy, grid->rows);
+    column = within(x + enter * ux, tiles->columns);
+    row = within(y + enter * uy, tiles->rows);
     to_column = ux != 0.0 ? fabs((double)(column + (ux > 0.0)) - x) * per_column : INFINITY;
     to_row = uy != 0.0 ? fabs((double)(row + (uy > 0.0)) - y) * per_row : INFINITY;
-    while (enter <= leave && enter * grid->side <= *nearest) {
-        cast_tile(scan, plane, grid, row * grid->columns + column);
+    while (enter <= leave && enter * tiles->side <= *nearest) {
+        cast_tile(scan, plane, tiles, row * tiles->columns + column);
         if (to_column < to_row) {
             enter = to_column;
             to_column += per_column;
             column += step_column;
-            if (column < 0 || column >= grid->columns)
+            if (column < 0 || column >= tiles->columns)
                 return;
         } else {
             enter = to_row;
             to_row += per_row;
             row += step_row;
-            if (row < 0 || row >= grid->rows)
+            if (row < 0 || row >= tiles->rows)
                 return;
         }
     }
 }
 
 /* Cast the tiles around the sensor at (x, y) [tiles]; returns up to what distance [tiles] all beams are done. */
-static double cast_block(const struct scan *scan, const struct beam_plane *plane, struct grid *grid, double x, double y)
+static double cast_block(const struct scan *scan, const struct beam_plane *plane, struct tiles *tiles, double x,
+                         double y)
 {
     int64_t column, row, first_column = (int64_t)x - BLOCK, first_row = (int64_t)y - BLOCK;
     double to_column = fmin(x - (double)first_column, (double)(first_column + 2 * BLOCK + 1) - x);
     double to_row = fmin(y - (double)first_row, (double)(first_row + 2 * BLOCK + 1) - y);
     for (row = first_row; row <= first_row + 2 * BLOCK; row++)
         for (column = first_column; column <= first_column + 2 * BLOCK; column++)
-            if (row >= 0 && row < grid->rows && column >= 0 && column < grid->columns)
-                cast_tile(scan, plane, grid, row * grid->columns + column);
+            if (row >= 0 && row < tiles->rows && column >= 0 && column < tiles->columns)
+                cast_tile(scan, plane, tiles, row * tiles->columns + column);
     return fmin(to_column, to_row);
 }
 
-static void cast_grid(const struct scan *scan, const struct beam_plane *plane, struct grid *grid, double x, double y)
+static void cast_tiles(const struct scan *scan, const struct beam_plane *plane, struct tiles *tiles, double x, double y)
 {
     double done;
     int64_t i;
-    grid->mark++;
-    for (i = 0; i < grid->n_everywhere; i++)
-        cast_segment(scan, plane->segments + 4 * (int64_t)grid->everywhere[i]);
-    done = cast_block(scan, plane, grid, x, y);
+    tiles->mark++;
+    for (i = 0; i < tiles->n_everywhere; i++)
+        cast_segment(scan, plane->segments + 4 * (int64_t)tiles->everywhere[i]);
+    done = cast_block(scan, plane, tiles, x, y);
     for (i = 0; i < scan->beams->samples; i++)
-        if (scan->nearest[i] > done * grid->side)
-            walk(scan, plane, grid, x, y, done, i);
+        if (scan->nearest[i] > done * tiles->side)
+            walk(scan, plane, tiles, x, y, done, i);
 }
 
 static void cast_plane(const struct scan *scan, const struct beam_plane *plane, int64_t robot)
 {
-    struct grid *grid = plane->grid;
-    double x = grid ? (scan->x - grid->x) / grid->side : -1.0, y = grid ? (scan->y - grid->y) / grid->side : -1.0;
+    struct tiles *tiles = plane->tiles;
+    double x = tiles ? (scan->x - tiles->x) / tiles->side : -1.0, y = tiles ? (scan->y - tiles->y) / tiles->side : -1.0;
     int64_t i;
     for (i = 0; i < plane->n_circles; i++)
         cast_circle(scan, plane->circles + 3 * i);
     for (i = 0; i < plane->n_bodies; i++)
         if (plane->owners[i] != robot)
             cast_circle(scan, plane->moved_bodies + 3 * i);
-    if (x >= 0.0 && y >= 0.0 && x <= (double)grid->columns && y <= (double)grid->rows)
-        cast_grid(scan, plane, grid, x, y);
+    if (x >= 0.0 && y >= 0.0 && x <= (double)tiles->columns && y <= (double)tiles->rows)
+        cast_tiles(scan, plane, tiles, x, y);
     else
         for (i = 0; i < plane->n_segments; i++)
             cast_segment(scan, plane->segments + 4 * i);

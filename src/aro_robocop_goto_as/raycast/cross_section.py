@@ -9,7 +9,7 @@ from ..geometry import Pose3D, Vector3, rotation_matrix
 from ..shapes import Box, Cylinder, Geometry, Mesh, PlacedShape, Plane, Sphere, Walls
 from ..world.model import World
 from ..world.scripted_motion import Motion, moving
-from .grid_index import Tiles
+from .tiles import Tiles
 
 CYLINDER_SIDES = 64  # of the prism that approximates a tilted cylinder; upright cylinders are exact
 FAR = 1e4  # [m] half the length of the segment that represents a vertical plane

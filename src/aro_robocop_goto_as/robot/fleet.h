@@ -1,9 +1,10 @@
-/* All robots of a simulation, one row each; mirrored by Fleet in fleet.py, where ARO_FLEET_VERSION changes with it. */
+/* All robots of a simulation, one row each. */
 #ifndef ARO_FLEET_H
 #define ARO_FLEET_H
 
 #include <stdint.h>
 
+/* Changes with each structure and function of the library that Python uses. */
 #define ARO_FLEET_VERSION 3
 
 /* Columns of limits, as in BaseLimits of base_controller.py */

@@ -7,20 +7,15 @@ from typing import NamedTuple, Sequence
 import numpy as np
 
 from .. import compiled
-from ..compiled import address, members
+from ..compiled import address, structure
 from ..geometry import Pose2D, Twist2D
 from .base_controller import BaseLimits
 from .model import Pair, RobotModel
 
-VERSION = 3  # of the structures that the library's functions take, as in fleet.h
 COLUMNS = {"radii": 0, "commands": 2, "commanded_at": 0, "velocities": 2, "targets": 2}
 COLUMNS.update(poses=3, twists=2, wheel_angles=2, wheel_speeds=2)
 
-
-class FleetStruct(ctypes.Structure):
-    """`struct fleet` of fleet.h."""
-
-    _fields_ = [("n", ctypes.c_int64), *members(ctypes.c_void_p, f"limits wheels {' '.join(COLUMNS)}")]
+_FleetStruct = structure("robot/fleet.h", "fleet")
 
 
 class RobotState(NamedTuple):
@@ -35,7 +30,7 @@ class RobotState(NamedTuple):
 @functools.lru_cache(maxsize=None)
 def library() -> ctypes.PyDLL:
     """The compiled functions that take a fleet; InstallationError when they can't be loaded."""
-    loaded = compiled.load("fleet", VERSION)
+    loaded = compiled.load("fleet", "robot/fleet.h")
     pointer, number, integer = ctypes.c_void_p, ctypes.c_double, ctypes.c_int64
     for name, result, arguments in (
         ("aro_control", ctypes.c_int, [pointer, number, number]),
@@ -72,7 +67,7 @@ class Fleet:
         self.commands, self.commanded_at, self.velocities = np.zeros((n, 2)), np.zeros(n), np.zeros((n, 2))
         self.targets, self.poses, self.twists = np.zeros((n, 2)), np.zeros((n, 3)), np.zeros((n, 2))
         self.wheel_angles, self.wheel_speeds = np.zeros((n, 2)), np.zeros((n, 2))
-        self.struct = FleetStruct(
+        self.struct = _FleetStruct(
             n,
             address("limits", self._limits, (n, len(BaseLimits._fields))),
             address("wheels", self.wheels, (n, 2)),

@@ -1,7 +1,10 @@
 """Differential-drive robots: their models and their states."""
 
+import math
 from dataclasses import dataclass
 from typing import Optional, Tuple
+
+import numpy as np
 
 from ..geometry import Pose2D, Pose3D, Vector3
 from ..param_loading import positive
@@ -11,6 +14,8 @@ WHEEL_JOINTS = ("wheel_left_joint", "wheel_right_joint")  # as the TurtleBot3 dr
 BASE = "base_link"
 CASTER_PREFIX = "caster"
 CAMERA_FRAME = "camera_rgb_optical_frame"  # as the TurtleBot3's camera in Gazebo names it
+MIN_HEIGHT = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section of a body
+MAX_SPACING = 0.09  # [m] between its cross-sections, from there up to the lidar
 
 Pair = Tuple[float, float]  # left and right wheel
 
@@ -47,6 +52,12 @@ class RobotModel:
     def height_of(self, mount: Pose3D) -> float:
         """Height above the floor [m] of something that is mounted at a pose in base_link."""
         return self.footprint_from_base.position[2] + mount.position[2]
+
+    def body_heights(self) -> Tuple[float, ...]:
+        """The heights [m] of the cross-sections at which obstacles touch the body; three for a Burger."""
+        top = self.height_of(self.base_from_scan)
+        count = 1 + max(1, math.ceil((top - MIN_HEIGHT) / MAX_SPACING))
+        return tuple(np.linspace(MIN_HEIGHT, top, count).tolist())
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,14 @@
 """RViz markers -> shapes of the page's scene."""
 
 import math
-from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, Optional, Sequence, Tuple, Union
 
 from geometry_msgs.msg import Point, Quaternion, Vector3
 from visualization_msgs.msg import Marker, MarkerArray
 
 from ..errors import FrameError
 from ..geometry import Pose3D, compose3
-from ..web.scene import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Placed, Shape, color_of
+from ..web.scene import BOX, CYLINDER, LINE, MESH, SPHERE, TEXT, Group, Visual, color_of
 from .convert import from_quaternion
 
 KINDS = {
@@ -20,7 +20,7 @@ KINDS = {
     Marker.TEXT_VIEW_FACING: TEXT,
 }
 Key = Tuple[str, int]  # namespace and id
-Marked = Tuple[str, Shape, Pose3D]  # frame, shape, pose in that frame
+VisualInFrame = Tuple[str, Visual, Pose3D]  # frame, shape, pose in that frame
 
 
 def to_pose(p: Union[Point, Vector3], q: Quaternion) -> Optional[Pose3D]:
@@ -32,7 +32,7 @@ def to_pose(p: Union[Point, Vector3], q: Quaternion) -> Optional[Pose3D]:
     return Pose3D((p.x, p.y, p.z), orientation) if all(map(math.isfinite, (p.x, p.y, p.z))) else None
 
 
-def to_shape(marker: Marker) -> Optional[Shape]:
+def to_shape(marker: Marker) -> Optional[Visual]:
     """A marker's shape, None for kinds that are not shown and for impossible figures."""
     kind = KINDS.get(marker.type)
     size = (marker.scale.x, marker.scale.y, marker.scale.z)
@@ -42,19 +42,14 @@ def to_shape(marker: Marker) -> Optional[Shape]:
         return None
     if (kind == MESH and (not points or len(points) % 3)) or (kind == LINE and len(points) < 2):
         return None
-    return Shape(kind, size, *color_of(color), points, marker.text[:500])
-
-
-def obstacles(group: Group) -> List[Placed]:
-    """Those of the shapes that are the simulator's markers for obstacles, not for robots."""
-    return [placed for key, placed in group.items() if isinstance(key, tuple) and key[0] == "world"]
+    return Visual(kind, size, *color_of(color), points, marker.text[:500])
 
 
 class MarkerStore:
     """The markers of one topic, after all its additions and deletions."""
 
     def __init__(self) -> None:
-        self._markers: Dict[Key, Marked] = {}
+        self._markers: Dict[Key, VisualInFrame] = {}
 
     def apply(self, message: MarkerArray) -> None:
         """Apply a message in the order of its markers; markers that can't be shown are left out."""

@@ -14,8 +14,8 @@ import rospy
 from ..errors import MasterError, RobocopError
 from ..names import SIMULATOR, robocop
 from ..param_loading import from_dict
-from ..probes import master
 from ..process.signals import ending_signals
+from . import graph
 
 HELP = """\
 {0}
@@ -62,13 +62,13 @@ def leave_name_to_another(node_name: str, always: bool = False) -> None:
     if not always and "__log" not in given:  # which roslaunch gives to all of its nodes
         return
     name = rosgraph.names.ns_join(rosgraph.names.get_ros_namespace(), given.get("__name", node_name))
-    uri = master.master_uri()
     kind = "a simulator" if node_name == SIMULATOR else "a node of this name"
     try:
-        running = master.running_node(uri, name, kind)
+        running = graph.running_node(name, kind)
     except MasterError as error:
         sys.exit(f"{node_name}: {error}")
     if running:
+        uri = rosgraph.get_master_uri()
         sys.exit(f"{node_name}: {running} as {name} on {uri}; stop it first, or use another ROS_MASTER_URI")
 
 
@@ -105,11 +105,10 @@ def end_with_master() -> None:
     """End the node when the ROS master's port is closed, because nobody could find the node; watches from a thread."""
 
     def watch() -> None:
-        uri = master.master_uri()
         while not rospy.is_shutdown():
             with contextlib.suppress(MasterError):  # it is busy
-                if not master.master_answers(uri):
-                    rospy.logfatal("the ROS master at %s has ended, and so does %s", uri, rospy.get_name())
+                if not graph.master_answers():
+                    rospy.logfatal("the ROS master has ended, and so does %s", rospy.get_name())
                     rospy.signal_shutdown("the ROS master has ended")
             time.sleep(MASTER_WATCH_PERIOD)
 

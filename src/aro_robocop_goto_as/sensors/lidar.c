@@ -1,14 +1,11 @@
-/* The errors of lidars: exact distances -> ranges.
- *
- * The structures are mirrored in lidar.py and sensor.py; ARO_CASTER_VERSION changes with it.
- */
+/* The errors of lidars: exact distances -> ranges. */
 
 #include <math.h>
 #include <stdint.h>
 
 struct lidar {
     double range_min, range_max; /* [m] */
-    double noise, step;          /* [m] standard deviation; resolution, 0: none */
+    double noise, resolution;    /* [m] standard deviation; ranges are whole multiples of it, 0: exact */
     double too_near, no_return;  /* [m] what is reported in these cases */
     double *normals;             /* (samples,) written by aro_measure */
     int64_t samples;
@@ -83,7 +80,7 @@ void aro_measure(const struct lidar *lidar, int64_t n_scans, const int64_t *robo
             else if (range > lidar->range_max)
                 row[k] = lidar->no_return;
             else
-                row[k] = lidar->step > 0.0 ? rint(range / lidar->step) * lidar->step : range;
+                row[k] = lidar->resolution > 0.0 ? rint(range / lidar->resolution) * lidar->resolution : range;
         }
     }
 }

@@ -7,7 +7,7 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from ..compiled import address, members
+from ..compiled import address, structure
 from ..raycast.beams import Beams
 from ..raycast.caster_library import load
 from .lidar_profiles import LidarParams, LidarProfile
@@ -15,16 +15,7 @@ from .sensor import Episode, MeasurementCalls, RobotIndices, Sensor, SensorConte
 
 SCAN = "scan"
 
-
-class _LidarStruct(ctypes.Structure):
-    """`struct lidar` of lidar.c."""
-
-    _fields_ = [
-        *members(ctypes.c_double, "range_min range_max noise step too_near no_return"),
-        ("normals", ctypes.c_void_p),
-        *members(ctypes.c_int64, "samples n_accuracy"),
-        ("accuracy", ctypes.c_void_p),
-    ]
+_Lidar = structure("sensors/lidar.c", "lidar")
 
 
 class RangeErrors:
@@ -37,11 +28,11 @@ class RangeErrors:
         self._samples = profile.samples
         self._accuracy = np.array(profile.accuracy, dtype=float).reshape(-1, 3)
         self._normals = np.zeros(profile.samples)
-        struct = _LidarStruct(
+        struct = _Lidar(
             profile.range_min,
             profile.range_max,
             profile.noise,
-            profile.step,
+            profile.resolution,
             *((0.0, 0.0) if profile.zero_is_none else (-math.inf, math.inf)),
             address("normals", self._normals, (profile.samples,)),
             profile.samples,
@@ -76,11 +67,9 @@ class Lidar(Sensor):
 
     def measurement_calls(self, robots: RobotIndices) -> MeasurementCalls:
         """Scan with these robots' lidars."""
-        cast = self._beams.casting(
-            self.context.sections.scene(self._mounts), robots, self.profile.range_max, self.ranges
-        )
+        cast = self._beams.casting(self.context.scenes.scene(self._mounts), robots, self.profile.range_max, self.ranges)
         return MeasurementCalls([cast, self._errors.adding(robots, self.context.episode, self.ranges)])
 
     def exact_distances(self, robot: int) -> np.ndarray:
         """What a lidar would measure now without noise and range_min: (samples,) [m]; no return = +inf."""
-        return self._beams.scan(self.context.sections.scene(self._mounts), [robot], self.profile.range_max)[0]
+        return self._beams.scan(self.context.scenes.scene(self._mounts), [robot], self.profile.range_max)[0]

@@ -30,7 +30,7 @@ class LidarProfile:
     range_max: float
     noise: float  # [m] sigma
     accuracy: Tuple[Accuracy, ...] = ()  # replaces the noise; in order of distance
-    step: float = 0.0  # [m] ranges are whole multiples of it; 0: not quantised
+    resolution: float = 0.0  # [m] ranges are whole multiples of it; 0: not quantised
     zero_is_none: bool = False  # no return, too near and too far are 0.0 instead of +inf, -inf, +inf (REP-117)
 
     @property
@@ -47,7 +47,7 @@ _GAZEBO = LidarProfile(10, 0.0, 6.28319, 360, 0.12, 10.0, 0.01)  # the lab's Gaz
 PROFILES: Dict[str, LidarProfile] = {
     "gazebo": _GAZEBO,
     "ideal": replace(_GAZEBO, noise=0.0),
-    "lds01": LidarProfile(5, 0.0, TURN - TURN / 360, 360, 0.12, 3.5, 0.01, step=0.001, zero_is_none=True),
+    "lds01": LidarProfile(5, 0.0, TURN - TURN / 360, 360, 0.12, 3.5, 0.01, resolution=0.001, zero_is_none=True),
     "lds02": LidarProfile(
         10,
         0.0,

@@ -1,7 +1,4 @@
-/* Wheel odometry of all robots: dead reckoning from what the wheel encoders count.
- *
- * The structure is mirrored in odometry.py; ARO_FLEET_VERSION changes with it.
- */
+/* Wheel odometry of all robots: dead reckoning from what the wheel encoders count. */
 
 #include <math.h>
 #include <stddef.h>
@@ -13,10 +10,10 @@ struct odometers {
     const double *wheels; /* (n, 2) radius and separation [m] that odometry assumes */
     double *poses;        /* (n, 3) x, y [m], yaw [rad] of the footprint in odom */
     double *twists;       /* (n, 2) mean v [m/s], w [rad/s] since the update before */
-    double *read;         /* (n, 2) encoder angles [rad] at the latest update, in whole ticks */
+    double *read;         /* (n, 2) encoder angles [rad] at the latest update, in whole multiples of the resolution */
     double *counted;      /* (n, 2) encoder angles [rad] */
     double *rolled;       /* (n, 2) true wheel angles [rad] at that time */
-    double slip, tick;    /* relative overcount; resolution [rad], 0: exact */
+    double slip, resolution; /* relative overcount; of the encoders [rad], 0: exact */
 };
 
 /* Update all odometers at true wheel angles (n, 2) [rad], dt [s] after the last update. noise: (n, 2) standard normal; its
@@ -35,7 +32,7 @@ void aro_odometry(struct odometers *odometers, const double *wheel_angles, const
                         + (angle - odometers->rolled[k]) * (1.0 + odometers->slip * fabs(noise[k]));
             odometers->counted[k] = angle;
             odometers->rolled[k] = wheel_angles[k];
-            read = odometers->tick > 0.0 ? floor(angle / odometers->tick) * odometers->tick : angle;
+            read = odometers->resolution > 0.0 ? floor(angle / odometers->resolution) * odometers->resolution : angle;
             travelled[k - 2 * i] = (read - odometers->read[k]) * radius;
             odometers->read[k] = read;
         }

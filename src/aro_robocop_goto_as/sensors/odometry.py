@@ -7,7 +7,7 @@ from typing import Callable, Sequence
 
 import numpy as np
 
-from ..compiled import address, members
+from ..compiled import address, structure
 from ..geometry import Pose2D, compose, inverse
 from ..param_loading import parameter
 from ..robot.fleet import library
@@ -15,6 +15,8 @@ from .sensor import MeasurementCalls, RateParams, RobotIndices, Sensor, SensorCo
 
 ODOM, JOINTS = "odom", "joint_states"
 SLIP_STREAM = 2**32  # of the noise of all encoders; see sensor.py
+
+_Odometers = structure("sensors/odometry.c", "odometers")
 
 
 @dataclass(frozen=True)
@@ -39,16 +41,6 @@ class OdometryParams(RateParams):
     joint_state_rate: int = parameter(30, low=1, about="[Hz] of joint_states")
 
 
-class _OdometersStruct(ctypes.Structure):
-    """`struct odometers` of odometry.c."""
-
-    _fields_ = [
-        ("n", ctypes.c_int64),
-        *members(ctypes.c_void_p, "wheels poses twists read counted rolled"),
-        *members(ctypes.c_double, "slip tick"),
-    ]
-
-
 class WheelOdometry(Sensor):
     """One odometry per robot: wheel odometry that starts at zero, or the true pose in the world.
 
@@ -68,12 +60,12 @@ class WheelOdometry(Sensor):
         self._fleet, self._follows_truth = context.fleet, follows_truth
         self.in_world = params.odom_source == "world"
         self._slips = params.odom_slip > 0.0 and not self.in_world
-        self._tick = params.encoder_tick
+        self._resolution = params.encoder_tick
         self._wheels = context.fleet.wheels * [1.0 + params.odom_wheel_radius_error, 1.0]
         self.poses, self.twists, self.map_from_odom = np.zeros((n, 3)), np.zeros((n, 2)), np.zeros((n, 3))
-        self._read = np.zeros((n, 2))  # encoder angles [rad] at the latest update, in whole ticks
+        self._read = np.zeros((n, 2))  # encoder angles [rad] at the latest update, in whole multiples of the resolution
         self._counted, self._rolled = np.zeros((n, 2)), np.zeros((n, 2))  # wheel angles with slip, and true ones [rad]
-        self._struct = _OdometersStruct(
+        self._struct = _Odometers(
             n,
             address("wheels", self._wheels, (n, 2)),
             address("poses", self.poses, (n, 3)),
@@ -82,7 +74,7 @@ class WheelOdometry(Sensor):
             address("counted", self._counted, (n, 2)),
             address("rolled", self._rolled, (n, 2)),
             params.odom_slip,
-            self._tick,
+            self._resolution,
         )
         self._noise = np.zeros((n, 2))  # standard normal, of the next update if wheels slip
         self.update: Callable[[], object] = self._copy
@@ -111,7 +103,7 @@ class WheelOdometry(Sensor):
     def joint_angles(self) -> np.ndarray:
         """Wheel angles (n, 2) [rad] at the resolution of the encoders, without slip."""
         angles = self._fleet.wheel_angles
-        return np.floor(angles / self._tick) * self._tick if self._tick else angles
+        return np.floor(angles / self._resolution) * self._resolution if self._resolution else angles
 
     def _draw_slip(self) -> None:
         self.context.noise.stream(SLIP_STREAM).standard_normal(out=self._noise)
@@ -124,7 +116,7 @@ class WheelOdometry(Sensor):
             self.map_from_odom[robot] = compose(self._fleet.pose(robot), inverse(Pose2D(*pose)))
 
     def pose_now(self, robot: int) -> Pose2D:
-        """odom_from_footprint as the next update will see it, without the slip that it draws."""
+        """odom_from_footprint at the present wheel angles, without noise; the arrays stay as they are."""
         rows = (self.poses, self.twists, self._read, self._counted, self._rolled)
         before = [row.copy() for row in rows]
         self._noise[:] = 0.0

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..geometry import Pose2D
 from ..physics.engine import Engine
-from ..raycast.sections import Mounts, Sections
+from ..raycast.scenes import BeamScenes, Mounts
 from ..world.model import World
 
 RobotIndices = Sequence[int]  # indices
@@ -62,7 +62,7 @@ class SensorContext:
         """`rate` [Hz] of the steps."""
         self.world, self.engine, self.rate = world, engine, rate
         self.fleet, self.models = engine.fleet, engine.fleet.models
-        self.sections = Sections(self.models, world, self.fleet.poses)
+        self.scenes = BeamScenes(self.models, world, self.fleet.poses)
         self.episode = Episode(seed, 0)
         self.noise = NoiseStreams(self.episode)
 
@@ -74,13 +74,13 @@ class SensorContext:
     def reset(self, seed: int) -> None:
         """Begin a new episode, with noise and moving obstacles at their start."""
         self.episode.seed, self.episode.step = seed, 0
-        self.sections.move(0.0)
+        self.scenes.move(0.0)
 
     def change_world(self, world: World) -> None:
         """Replace the world; its moving obstacles are where they are at the present time."""
         self.world = world
-        self.sections.change_world(world)
-        self.sections.move(self.time)
+        self.scenes.change_world(world)
+        self.scenes.move(self.time)
 
 
 @dataclass(frozen=True)

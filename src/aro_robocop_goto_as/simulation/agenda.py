@@ -1,4 +1,4 @@
-"""What is due on which step, and the calls that measure it, prepared once for all steps that are alike."""
+"""Which ticks and sensors are due on a step, and the calls that measure; steps on which the same is due share them."""
 
 from dataclasses import dataclass, field
 from typing import Dict, Mapping, Tuple
@@ -12,7 +12,7 @@ Subscriptions = Mapping[str, RobotIndices]  # topic of a sensor -> the robots fo
 
 
 @dataclass(eq=False)
-class Due:
+class StepEvents:
     """What is due on a step; the same object on all steps that are alike, while the subscriptions stay the same."""
 
     clock: bool = False  # a clock tick: /clock is due
@@ -32,7 +32,7 @@ class Agenda:
         self._sensors, self._context, self._rates = sensors.by_topic, context, rates
         self._schedule_for({})
 
-    def after(self, step: int, subscriptions: Subscriptions) -> Tuple[int, Due]:
+    def after(self, step: int, subscriptions: Subscriptions) -> Tuple[int, StepEvents]:
         """How many steps after this one something is due, and what it is."""
         if subscriptions is not self._subscriptions and subscriptions != self._subscriptions:
             self._schedule_for(subscriptions)
@@ -45,16 +45,16 @@ class Agenda:
             if sensor.always_on or subscriptions.get(topic):
                 rates[topic] = sensor.rate
         after = due_next(rates, self._rates.physics_rate)
-        self._dues: Dict[Tuple[str, ...], Due] = {}
+        self._events: Dict[Tuple[str, ...], StepEvents] = {}
         for names in {names for _, names in after}:
             sensors = {name: subscriptions[name] for name in names if subscriptions.get(name)}
-            self._dues[names] = Due(CLOCK in names, CONTROL in names, sensors)
-        self._after = [(steps, self._dues[names]) for steps, names in after]  # by the step's number within its second
+            self._events[names] = StepEvents(CLOCK in names, CONTROL in names, sensors)
+        self._after = [(steps, self._events[names]) for steps, names in after]  # by the step's number within its second
         self.prepare()
 
     def prepare(self) -> None:
         """Find the calls that measure what is due, anew after a change of the world."""
-        for names, due in self._dues.items():
+        for names, due in self._events.items():
             parts = [self._sensors[name].measurement_calls(due.of(name)) for name in names if name in self._sensors]
             measure = [call for part in parts for call in part.measure]
             before = [call for part in parts for call in part.before]

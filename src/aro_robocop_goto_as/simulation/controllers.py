@@ -4,7 +4,7 @@ from typing import Dict, NamedTuple, Optional
 
 from ..geometry import STANDSTILL, Twist2D
 from .jobs import WallClock
-from .lockstep import Connected, ControllerId, Lockstep, TickReport
+from .lockstep import Connected, ControllerId, Lockstep, TickOutcome
 from .params import LockstepParams
 from .simulator import Simulator
 
@@ -38,14 +38,14 @@ class Controllers:
             if twist is not None:
                 self._simulator.command(twist, controller.robot)
         elif not self.lockstep.answers_ticks(controller):  # which sends the same command with its answer
-            self.lockstep.commanded(controller, self.tick)
+            self.lockstep.commanded(controller, self.period)
             self._keep(controller, twist)
 
     def answer(self, controller: ControllerId, stamp_ns: int, twist: Optional[Twist2D]) -> None:
         """A controller's answer to the control tick at `stamp_ns`, with its command if it has one."""
-        tick = round(stamp_ns * self._rate / 1e9)
-        if tick <= self.tick:  # else simulated time has not been there
-            self.lockstep.answered(controller, tick)
+        period = round(stamp_ns * self._rate / 1e9)
+        if period <= self.period:  # else simulated time has not been there
+            self.lockstep.answered(controller, period)
             self._keep(controller, twist)
 
     def _keep(self, controller: ControllerId, twist: Optional[Twist2D]) -> None:
@@ -60,14 +60,14 @@ class Controllers:
         return pending.commands
 
     @property
-    def tick(self) -> int:
-        """Number of the control tick at which simulated time stands, or which it runs towards."""
+    def period(self) -> int:
+        """Number of the control period in which, or at whose end, simulated time stands."""
         return -(-self._simulator.steps * self._rate // self._simulator.rate)
 
     def begin_tick(self, connected: Connected) -> None:
         """Simulated time has reached a control tick, and is held until the controllers have answered."""
         self._resets = self._simulator.resets
-        self.lockstep.begin_tick(self.tick, connected)
+        self.lockstep.begin_tick(self.period, connected)
 
     def hold_time(self, connected: Connected) -> float:
         """How long to hold simulated time at this tick [s, wall] before asking again; 0: it may go on.
@@ -76,12 +76,12 @@ class Controllers:
         """
         if self._simulator.resets != self._resets:
             return 0.0
-        return self.lockstep.hold_time(self.tick, connected)
+        return self.lockstep.hold_time(self.period, connected)
 
-    def end_tick(self) -> TickReport:
+    def end_tick(self) -> TickOutcome:
         """Apply the commands of the tick; where several nodes command one robot, the last one by name wins."""
-        report = self.lockstep.report
-        for robot, node in report.gone:
+        outcome = self.lockstep.outcome
+        for robot, node in outcome.gone:
             commands = self._commands(robot)
             commands.pop(node, None)
             if not commands:
@@ -91,4 +91,4 @@ class Controllers:
             if commands:
                 self._simulator.command(commands[max(commands)], robot)
         self._pending.clear()
-        return report
+        return outcome

@@ -2,8 +2,8 @@
 
 from typing import Callable, List, Sequence
 
+from ..floor_plan.free_places import free_place, free_places
 from ..physics.engine import Engine, EngineParams
-from ..raycast.free_places import free_place, free_places
 from ..robot.base_controller import limits_from
 from ..robot.fleet import Fleet
 from ..robot.model import RobotModel, RobotSpec

@@ -2,24 +2,24 @@
 
 from typing import AbstractSet, Callable, Iterator, NamedTuple, Optional
 
-from .agenda import Due, Subscriptions
+from .agenda import StepEvents, Subscriptions
 from .controllers import Controllers
 from .jobs import Jobs, WallClock
-from .lockstep import Connected, TickReport
+from .lockstep import Connected, TickOutcome
 from .simulator import Change, Simulator
 from .time_control import TimeControl
 
-MAX_SLEEP = 0.05  # [s, wall] a sleep during which jobs may wait; waiting for jobs costs four times the processor time
+MAX_SLEEP = 0.05  # [s, wall] while asleep, jobs wait; a longer wait runs them as they come, at four times the cost
 
 
 class Round(NamedTuple):
     """What the owner of a running simulator is to publish now; often nothing, while time stands still."""
 
-    due: Optional[Due] = None  # of the newest step
+    due: Optional[StepEvents] = None  # of the newest step
     more: bool = False  # the next step's messages follow at once
     changes: AbstractSet[Change] = frozenset()  # other than by a step, to be published again; at the start everything
     clock: bool = False  # publish the time again at which the simulation stands, for nodes that have started meanwhile
-    tick: Optional[TickReport] = None  # in lockstep, how the control tick has ended
+    outcome: Optional[TickOutcome] = None  # in lockstep, of the control tick that has ended
 
 
 class RunningSimulator:
@@ -58,7 +58,7 @@ class RunningSimulator:
                 if due.control and controllers.in_lockstep:
                     controllers.begin_tick(connected)
                     yield from self._hold(lambda: controllers.hold_time(connected))
-                    yield Round(tick=controllers.end_tick())
+                    yield Round(outcome=controllers.end_tick())
             if time.end_span(simulator.steps) or (due is not None and due.clock):
                 yield from self._pace()
                 subscribed = subscriptions()

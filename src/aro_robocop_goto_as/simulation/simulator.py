@@ -7,17 +7,17 @@ from typing import Optional, Sequence, Set
 import numpy as np
 
 from ..errors import PlaceError
+from ..floor_plan.obstacle_distance import ObstacleDistance
+from ..floor_plan.occupancy import occupancy_of
 from ..geometry import Pose2D, Twist2D, compose, inverse
 from ..physics.engine import Engine
-from ..raycast.obstacle_distance import ObstacleDistance, body_heights
-from ..raycast.occupancy import occupancy_of
 from ..robot.base_controller import clamped
 from ..robot.fleet import Fleet
 from ..robot.model import RobotSpec
 from ..sensors.catalog import Sensors
 from ..sensors.sensor import SensorContext
 from ..world.model import Occupancy, World
-from .agenda import Agenda, Due, Subscriptions
+from .agenda import Agenda, StepEvents, Subscriptions
 from .params import SimParams
 from .schedule import stamp_ns
 
@@ -85,7 +85,7 @@ class Simulator:
         fleet = self.engine.fleet
         fleet.commands[robot], fleet.commanded_at[robot] = clamped(twist, fleet.limits[robot]), self.time
 
-    def advance(self, subscriptions: Subscriptions, most: int = 1) -> Optional[Due]:
+    def advance(self, subscriptions: Subscriptions, most: int = 1) -> Optional[StepEvents]:
         """Run to the next step on which something is due, and measure it; None if that is more than `most` steps on.
 
         What is measured, for the robots that are subscribed to, is in the arrays of `sensors`.
@@ -113,7 +113,7 @@ class Simulator:
             if self.moving:
                 self.engine.move_obstacles(self.world_time)
         if self.moving:
-            self.context.sections.move(self.world_time)
+            self.context.scenes.move(self.world_time)
 
     # -- the state of the world and of its robots --
 
@@ -159,7 +159,7 @@ class Simulator:
         if self.world.occupancy is not None:
             return self.world.occupancy
         model = self.robots[0].model
-        section = self.context.sections.section(model.height_of(model.base_from_scan))
+        section = self.context.scenes.section(model.height_of(model.base_from_scan))
         poses = [self.world_from_footprint(robot) for robot in range(len(self.robots))]
         starts = [*(robot.spawn for robot in self.robots), *poses]
         return occupancy_of(section.segments, section.circles_at_start, starts, self.params.world.map_resolution)
@@ -178,9 +178,9 @@ class Simulator:
         self.changes.add(Change.WORLD)
 
     def place(self, world_from_footprint: Pose2D, robot: int = 0) -> None:
-        """Place a robot elsewhere, at rest. Wheel odometry continues, so map -> odom absorbs the jump.
+        """Place a robot elsewhere, at rest. Its wheel odometry does not notice, so map -> odom jumps instead.
 
-        The wheels' motion since the last odometry update belongs to the time before the jump.
+        What the wheels have turned since the last update of odometry counts as driven before the jump.
         """
         self.engine.update_fleet()
         odom_from_footprint = self.sensors.odometry.pose_now(robot)
@@ -195,7 +195,7 @@ class Simulator:
         """PlaceError, naming what is in the way, if a robot's footprint at a pose overlaps something."""
         x, y, fleet = pose.x, pose.y, self.fleet
         radii = fleet.radii.tolist()
-        nearest = ObstacleDistance(self.world, body_heights(self.robots[robot].model), self.world_time).nearest(x, y)
+        nearest = ObstacleDistance(self.world, self.robots[robot].model.body_heights(), self.world_time).nearest(x, y)
         if nearest.distance < radii[robot]:
             raise PlaceError(
                 f"x {x:.3f} y {y:.3f} is {nearest.distance:.3f} m from '{nearest.name}', expected at least the robot's "

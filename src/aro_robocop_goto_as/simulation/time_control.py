@@ -9,14 +9,14 @@ from .params import TimeParams
 
 PAUSED_PERIOD = 0.1  # [s, wall] between repetitions of /clock while paused, for nodes that start meanwhile
 MAX_HOLD = 0.5  # [s, wall] between two checks for other due work while the wall clock is waited for
-REPORT_PERIOD = 1.0  # [s, wall]
+PACE_PERIOD = 1.0  # [s, wall] over which the pace is measured
 MAX_LAG = 0.1  # [s, wall] a longer lag is dropped instead of being made up for in a burst
 REST_PERIOD, REST = 0.01, 1e-4  # [s, wall] a simulation that never waits rests this often, for this long
 TOLERANCE = 0.95  # share of the requested factor, below which the simulation counts as behind
 
 
 @dataclass(frozen=True)
-class FactorReport:
+class Pace:
     """Real-time factor reached over the last period, and the requested one (0 = as fast as possible)."""
 
     reached: float
@@ -49,7 +49,7 @@ class Pacer:
     def restart(self, step: int) -> None:
         """Start counting at this step, as after a pause."""
         self._anchor_wall, self._anchor_step = self.now(), step
-        self._report_wall, self._report_step = self._anchor_wall, step
+        self._pace_wall, self._pace_step = self._anchor_wall, step
         self._rested = self._anchor_wall
         self._waited = self._lag = self._dropped = 0.0
 
@@ -79,17 +79,17 @@ class Pacer:
         if seconds >= REST:
             self._rested = self.now()
 
-    def report(self, step: int) -> Optional[FactorReport]:
-        """The factor since the last report; None until a report period has passed."""
+    def measure_pace(self, step: int) -> Optional[Pace]:
+        """The pace since the last measurement; None until PACE_PERIOD has passed."""
         wall = self.now()
-        elapsed = wall - self._report_wall
-        if elapsed < REPORT_PERIOD:
+        elapsed = wall - self._pace_wall
+        if elapsed < PACE_PERIOD:
             return None
-        done = step - self._report_step
+        done = step - self._pace_step
         step_time = max(0.0, elapsed - self._waited) / done if done > 0 else 0.0
         dropped, self._dropped = self._dropped, 0.0
-        self._report_wall, self._report_step, self._waited = wall, step, 0.0
-        return FactorReport(done / self._rate / elapsed, self.factor, step_time, self._lag, dropped)
+        self._pace_wall, self._pace_step, self._waited = wall, step, 0.0
+        return Pace(done / self._rate / elapsed, self.factor, step_time, self._lag, dropped)
 
 
 class TimeControl:

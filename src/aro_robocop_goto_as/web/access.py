@@ -28,8 +28,8 @@ def refusal(hosts: Sequence[str], origins: Sequence[str], names: Sequence[str], 
     names: host names that mean this machine, besides localhost and any numeric address
     allowed: further origins, such as a proxy's, as https://host:port
 
-    A page of another site has another origin. A site whose name was made to point to this machine (DNS rebinding) has
-    the origin of its Host header, but that is a name which does not belong here.
+    A page of another site has another origin than the host it asks. With DNS rebinding, where that site's name points
+    to this machine, both are the same; but the name is none of this machine's.
     """
     if len(origins) > 1 or len(hosts) != 1:
         return "expected one Host and at most one Origin header"

@@ -22,8 +22,8 @@ FLAT = {"cast_shadow": False, "receive_shadow": False}
 
 
 @dataclass(frozen=True)
-class Shape:
-    """One shape in its own frame.
+class Visual:
+    """One shape in its own frame, with its looks.
 
     size: [m] of a box: x, y, z; of a cylinder: diameter, -, height along z; of a sphere and of points: diameter; of a
         line: width; of text: height; of an image: width, height
@@ -38,12 +38,12 @@ class Shape:
     opacity: float = 1.0
     points: Tuple[Vector3, ...] = ()
     text: str = ""
-    parts: "Tuple[Placed, ...]" = ()
+    parts: "Tuple[PlacedVisual, ...]" = ()
     image: Optional[np.ndarray] = field(default=None, compare=False)
 
 
-Placed = Tuple[Shape, Pose3D]
-Group = Dict[Hashable, Placed]
+PlacedVisual = Tuple[Visual, Pose3D]
+Group = Dict[Hashable, PlacedVisual]
 
 
 def color_of(rgba: Iterable[float]) -> Tuple[Color, float]:
@@ -57,7 +57,7 @@ def _wxyz(pose: Pose3D) -> Tuple[float, float, float, float]:
     return (w, x, y, z)
 
 
-def _options(shape: Shape) -> Tuple[Dict[str, Any], Dict[str, Any]]:
+def _options(shape: Visual) -> Tuple[Dict[str, Any], Dict[str, Any]]:
     """viser's arguments for a shape: those that are fixed once it is drawn, and those that can be set later on."""
     kind, (x, y, z), points = shape.kind, shape.size, np.array(shape.points, dtype=np.float32)
     look = {"color": shape.color, "opacity": shape.opacity if shape.opacity < 1.0 else None}
@@ -84,11 +84,11 @@ def _options(shape: Shape) -> Tuple[Dict[str, Any], Dict[str, Any]]:
 
 
 @dataclass
-class _Drawn:
+class _SceneNode:
     """A shape in the scene, with the handle of viser, and the shape and the pose that were sent last."""
 
     handle: Any
-    shape: Shape
+    shape: Visual
     pose: Pose3D
 
     def move(self, pose: Pose3D) -> None:
@@ -97,7 +97,7 @@ class _Drawn:
             self.handle.position, self.handle.wxyz = pose.position, _wxyz(pose)
             self.pose = pose
 
-    def restyle(self, new: Shape) -> bool:
+    def restyle(self, new: Visual) -> bool:
         """Change what can be changed in place; False if the shape has to be drawn anew."""
         old, self.shape = self.shape, new
         if old == new:
@@ -115,7 +115,7 @@ class PageScene:
 
     def __init__(self, api: Any) -> None:
         self._api = api
-        self._groups: Dict[str, Dict[Hashable, _Drawn]] = {}
+        self._groups: Dict[str, Dict[Hashable, _SceneNode]] = {}
         self._count = 0
 
     def show(self, group: str, shapes: Group) -> None:
@@ -130,13 +130,13 @@ class PageScene:
             if key in drawn:
                 drawn[key].handle.remove()
             self._count += 1  # names from outside may hold slashes, which viser takes for a hierarchy
-            drawn[key] = _Drawn(self._draw(f"/{group}/{self._count}", shape, pose), shape, pose)
+            drawn[key] = _SceneNode(self._draw(f"/{group}/{self._count}", shape, pose), shape, pose)
 
     def draws(self, group: str) -> bool:
         """Return whether anything of the group is shown."""
         return bool(self._groups.get(group))
 
-    def _draw(self, name: str, shape: Shape, pose: Pose3D) -> Any:
+    def _draw(self, name: str, shape: Visual, pose: Pose3D) -> Any:
         where = {"position": pose.position, "wxyz": _wxyz(pose)}
         if shape.kind == BODY:
             handle = self._api.add_frame(name, show_axes=False, **where)

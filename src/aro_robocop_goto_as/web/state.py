@@ -11,7 +11,7 @@ from ..geometry import Pose3D
 class PageState:
     """What more than one part of the page needs to know."""
 
-    live: bool = True  # visitors can send requests; otherwise they watch the system, or a recording
+    can_send: bool = True  # visitors can send requests; otherwise they watch the system, or a recording
     recorded: bool = False  # a recording is shown, no running system
     robots: Tuple[str, ...] = ("",)  # namespaces; "" is a robot without one
     chosen: str = ""  # the robot that a visitor chose last

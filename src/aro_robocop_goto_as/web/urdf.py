@@ -10,7 +10,7 @@ from ..robot.urdf import origin_of, primitive, vector
 from ..shapes import Box, Cylinder, Sphere
 from ..world.sdf.meshes import load_triangles
 from ..world.sdf.uris import locate
-from .scene import BODY, BOX, CYLINDER, MESH, SPHERE, Color, Placed, Shape, color_of
+from .scene import BODY, BOX, CYLINDER, MESH, SPHERE, Color, PlacedVisual, Visual, color_of
 
 Look = Tuple[Color, float]  # colour, opacity
 PLAIN: Look = ((150, 150, 155), 1.0)  # of a visual without a colour
@@ -18,7 +18,7 @@ NAME = "robot_description"  # in messages
 MESHES = ("package://", "file://")  # where a description may take meshes from
 
 
-def read_links(text: str) -> Dict[str, Shape]:
+def read_links(text: str) -> Dict[str, Visual]:
     """The links by name, each a body of its visuals; a link without visuals is left out.
 
     Meshes that can't be found or read are left out, too. RobotModelError if the description is not a URDF.
@@ -33,23 +33,23 @@ def read_links(text: str) -> Dict[str, Shape]:
             for link in root.iterfind("link")
         }
     links = {name: tuple(part for part in parts if part is not None) for name, parts in placed.items()}
-    return {name: Shape(BODY, parts=parts) for name, parts in links.items() if parts}
+    return {name: Visual(BODY, parts=parts) for name, parts in links.items() if parts}
 
 
-def _placed(visual: Element, looks: Dict[Optional[str], Look]) -> Optional[Placed]:
+def _placed(visual: Element, looks: Dict[Optional[str], Look]) -> Optional[PlacedVisual]:
     geometry = visual.find("geometry/*")
     shape = None if geometry is None else _shape(geometry, _look(visual.find("material"), looks))
     return None if shape is None else (shape, origin_of(visual))
 
 
-def _shape(geometry: Element, look: Look) -> Optional[Shape]:
+def _shape(geometry: Element, look: Look) -> Optional[Visual]:
     solid = primitive(geometry)
     if isinstance(solid, Box):
-        return Shape(BOX, solid.size, *look)
+        return Visual(BOX, solid.size, *look)
     if isinstance(solid, (Cylinder, Sphere)):
         diameter = 2.0 * solid.radius
         length = solid.length if isinstance(solid, Cylinder) else diameter
-        return Shape(CYLINDER if isinstance(solid, Cylinder) else SPHERE, (diameter, diameter, length), *look)
+        return Visual(CYLINDER if isinstance(solid, Cylinder) else SPHERE, (diameter, diameter, length), *look)
     uri = geometry.get("filename", "")
     if geometry.tag != "mesh" or not uri.startswith(MESHES):
         return None
@@ -58,7 +58,7 @@ def _shape(geometry: Element, look: Look) -> Optional[Shape]:
     except (WorldError, OSError):
         return None
     corners = tuple((x, y, z) for x, y, z in triangles.reshape(-1, 3).tolist())
-    return Shape(MESH, color=look[0], opacity=look[1], points=corners)
+    return Visual(MESH, color=look[0], opacity=look[1], points=corners)
 
 
 def _look(material: Optional[Element], looks: Dict[Optional[str], Look]) -> Look:

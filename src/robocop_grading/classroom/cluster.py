@@ -14,9 +14,7 @@ from distributed import Client, Future, LocalCluster, as_completed
 from distributed.security import Security
 
 from ..errors import GradingSetupError, UngradableError
-from ..texts import shortened
 
-MAX_SHOWN = 500  # characters of an error
 # Python before 3.11.5 may hang for ever in sys._current_frames(), which dask's profiler calls a hundred times a second,
 # if a garbage collection, to which dask has added a callback, comes in the middle of it (CPython issue 106883).
 SETTINGS = {
@@ -88,5 +86,5 @@ def _problem(future: Future) -> str:
         return ""
     error = future.exception() if future.status == "error" else "the connection to the scheduler was lost"
     if isinstance(error, (str, UngradableError)):
-        return shortened(f"no grade: {error}", MAX_SHOWN)
-    return shortened(f"could not be graded: {type(error).__name__}: {error}", MAX_SHOWN)
+        return f"no grade: {error}"
+    return f"could not be graded: {type(error).__name__}: {error}"

@@ -8,21 +8,20 @@ import sys
 import time
 from functools import partial
 from pathlib import Path
-from typing import Callable, Collection, Dict, List, Mapping, Optional, Sequence, Set
+from typing import Callable, Dict, List, Mapping
 from xml.etree import ElementTree
 
 from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.own_path import expect_own
-from aro_robocop_goto_as.process import orphans
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
-from aro_robocop_goto_as.suggestions import did_you_mean
+from robocop_hosting import orphans
 from robocop_hosting.scratch import scratch_folder
 from robocop_hosting.workspace import exclusive, places
 
 from ..cli import INTERRUPTED, WRONG_USE
 from ..errors import GradingSetupError
-from ..files.exports import class_folder, hand_in_of, people, visible
+from ..files.exports import class_folder, people, visible
 from ..plan import Plan
 from ..plan_file import load
 from ..report.write import make_report_folder
@@ -31,93 +30,73 @@ from ..scenarios import MAX_SEED
 from ..submission import lab_environment
 from ..texts import printable_lines, shortened
 from .hand_ins import collect
-from .results import STAMP as RESULT
-from .results import WAITING, Results, StoredGrade, page, summary, write_atomically
+from .overview import page
+from .results import HAND_IN_STAMP, MAX_TOLD, Results, StoredGrade, write_atomically
 from .summary import Summary, pace
 from .table import one_line, table
 from .worker import work
 
 CSV, HTML = "grades.csv", "index.html"
-STAMP, PLAN = ".robocop_class", ".plan.yaml"  # in the folder of the results: the seed, and a copy of the plan
+CLASS_STAMP, PLAN = ".robocop_class", ".plan.yaml"  # in the folder of the results: the seed, and a copy of the plan
 WORKERS_LOG = ".workers.log"  # in the folder of the results
-PERIOD = 5.0  # [s, wall] after which the table and the overview are written anew, at the earliest
-MAX_LINE = 300  # characters of a hand-in's problems on the terminal
-NEW_POINTS = "the points have changed: the table and the overview have the new ones, reports the old ones until --again"
-AGAIN = "also grade these hand-ins, or all, if no name follows, that have a result"
+NOT_YET = "not graded yet: run the same command again to continue"
 CLASS_SEED = "draws the scenarios of the whole class (default: the one of the results so far; at first a random one)"
 
 
 class Gradebook:
     """The hand-ins of one folder and their grades so far."""
 
-    def __init__(
-        self, folder: Path, results: Results, plan: Plan, hand_ins: Mapping[str, str], again: Collection[str]
-    ) -> None:
+    def __init__(self, folder: Path, results: Results, plan: Plan, hand_ins: Mapping[str, str]) -> None:
         self.folder, self.plan, self.results = folder, plan, results
         self._people = people(folder)
         self.count = len(hand_ins)
         self.done: Dict[str, StoredGrade] = {
-            name: results.read(name)
-            for name, digest in hand_ins.items()
-            if name not in again and results.has(name, digest)
+            name: results.read(name) for name, digest in hand_ins.items() if results.has(name, digest)
         }
-        self._again = again
-        left = [name for name in hand_ins if name not in self.done]
-        self.waiting = {name: hand_ins[name] for name in sorted(left, key=lambda name: name not in again)}
+        self.waiting = {name: digest for name, digest in hand_ins.items() if name not in self.done}
         self.problems: Dict[str, str] = {}
-        self._started, self._before = time.monotonic(), {*self.done}
-        self._next_write = 0.0  # [s, wall]
+        self._started, self._ran = time.monotonic(), 0
 
     @property
     def figures(self) -> Summary:
         """How many hand-ins are judged so far, and their points."""
-        return summary(list(self.done.values()), self.plan, len(self.problems))
+        judged = [result.points for result in self.done.values() if result.is_judged]
+        return Summary(judged, len(self.done) - len(judged) + len(self.problems), self.plan.points)
 
     @property
     def pace(self) -> str:
         """The rate of grading and the time left, in words, by the hand-ins that have run; the others take no time."""
-        ran = sum(it.is_judged for name, it in self.done.items() if name not in self._before)
         left = [name for name, digest in self.waiting.items() if digest and name not in self.problems]
-        return pace(ran, len(left), time.monotonic() - self._started)
+        return pace(self._ran, len(left), time.monotonic() - self._started)
 
     def summary_lines(self) -> List[str]:
         """The figures for the terminal, and the hand-ins that are not gradable, with the reasons."""
         reasons = {name: " | ".join(it.problems) for name, it in sorted(self.done.items()) if not it.is_judged}
         reasons.update(self.problems)
         told = [f"not gradable: {it}: {why}" for it, why in reasons.items()]
-        return self.figures.lines() + [shortened(one_line(it), MAX_LINE) for it in told]
+        figures = [it for it in (self.figures.counts, self.figures.averages) if it]
+        return figures + [shortened(one_line(it), MAX_TOLD) for it in told]
 
     def add(self, name: str, problem: str) -> str:
         """Note that a hand-in has a result, or the reason why it has none; return a line about it for the terminal."""
         if problem:
             self.problems[name] = problem
-            return one_line(f"{name}: {problem}")
+            return shortened(one_line(f"{name}: {problem}"), MAX_TOLD)
         result = self.done[name] = self.results.read(name)
         self.waiting.pop(name, None)
-        if time.monotonic() >= self._next_write:
-            self.write(running=True)
-        problems = shortened(f" ({' | '.join(result.problems)})", MAX_LINE) if result.problems else ""
+        self._ran += result.is_judged
+        problems = shortened(f" ({' | '.join(result.problems)})", MAX_TOLD) if result.problems else ""
         words = f"{result.words if result.is_judged else 'not gradable'}, {result.seconds:.0f} s{problems}"
         left = f"; {self.pace}" if self.pace else ""
         return one_line(f"[{len(self.done)}/{self.count}] {name}: {words}{left}")
 
-    def add_stored(self) -> None:
-        """Add the results that workers have stored but could not report.
-
-        A hand-in that is graded again may still have its older result, which is not added.
-        """
-        for name, digest in list(self.waiting.items()):
-            if name not in self._again and self.results.has(name, digest):
-                self.add(name, "")
-
-    def write(self, running: bool) -> None:
+    def write(self) -> None:
         """Write the table and the overview of the results so far."""
         results, folder = [self.done[name] for name in sorted(self.done)], self.results.folder
         write_atomically(folder / CSV, table(results, self.plan, self.problems, self._people))
-        waiting = {name: self.problems.get(name, WAITING) for name in self.waiting}
-        html = page(self.folder.name, results, self.plan, waiting, running, self.pace, self._people)
+        missing = {name: self.problems.get(name, NOT_YET) for name in self.waiting}
+        html = page(self.folder.name, results, self.plan, self.figures, missing, self._people)
         write_atomically(folder / HTML, html)
-        self._next_write = time.monotonic() + PERIOD
 
 
 def arguments() -> argparse.Namespace:
@@ -131,7 +110,6 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, metavar="N", help=CLASS_SEED)
     parser.add_argument("--workers", type=int, metavar="N", help="hand-ins at once (default: one a core)")
     parser.add_argument("--scheduler", default="", metavar="tls://HOST:PORT", help="use the workers of this scheduler")
-    parser.add_argument("--again", nargs="*", metavar="NAME", help=AGAIN)
     parser.add_argument("--unsafe", action="store_true", help="run the submissions without bubblewrap's sandbox")
     return parser.parse_args()
 
@@ -148,35 +126,30 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
     out = Path(os.path.realpath(args.report or f"{folder}_results"))
     if not args.unsafe:
         expect_private(folder)
-    expect_own(out, STAMP, folder)
-    class_plan(args, out, share)
+    expect_own(out, CLASS_STAMP, folder)
     given, folder = folder, class_folder(folder, (CSV, HTML))
     if folder != given:
         print(f"{one_line(str(folder))} is the class: nothing else is in {one_line(str(given))}", flush=True)
     hand_ins = _hand_ins(folder)
-    stored = [path.name for path in visible(out) if (path / RESULT).is_file()] if out.is_dir() else []
+    stored = [path.name for path in visible(out) if (path / HAND_IN_STAMP).is_file()] if out.is_dir() else []
     if stored and not {*stored} & {*hand_ins}:
         others = f"results of other hand-ins, such as {stored[0]}"
         raise GradingSetupError(f"{out} has {others}: give another folder by --report")
     version = ElementTree.parse(share / "package.xml").findtext("version")
-    make_report_folder(out, STAMP)
+    make_report_folder(out, CLASS_STAMP)
     with scratch_folder(), exclusive(out / ".run"):
-        plan = class_plan(args, out, share)  # now, as a grading that ran until now may have drawn a seed
+        plan = class_plan(args, out, share)
         results = Results(out, plan, version or "")
-        text = plan.path.read_text(encoding="utf-8")
-        new_points = (out / PLAN).is_file() and (out / PLAN).read_text(encoding="utf-8") != text
-        gradebook = Gradebook(folder, results, plan, hand_ins, to_regrade(args.again, hand_ins))
-        write_atomically(out / STAMP, f"{plan.seed}\n")
-        write_atomically(out / PLAN, text)
+        gradebook = Gradebook(folder, results, plan, hand_ins)
+        write_atomically(out / CLASS_STAMP, f"{plan.seed}\n")
+        write_atomically(out / PLAN, plan.path.read_text(encoding="utf-8"))
         print(f"{gradebook.count} handed in, {len(gradebook.done)} of them already graded", flush=True)
         print(f"scenarios: seed {plan.seed}", flush=True)
-        if new_points and gradebook.done:
-            print(NEW_POINTS, flush=True)
         if not args.scheduler:
             open_sandbox(args.unsafe)
             lab_environment(share, state)
         workers = args.workers or len(os.sched_getaffinity(0))
-        grade(gradebook, args.scheduler, workers, partial(work, plan=plan, results=results, unsafe=args.unsafe))
+        grade_waiting(gradebook, args.scheduler, workers, partial(work, plan=plan, results=results, unsafe=args.unsafe))
     return gradebook
 
 
@@ -210,30 +183,21 @@ def main() -> None:
     sys.exit(1 if gradebook.figures.not_judged else 0)
 
 
-def to_regrade(again: Optional[Sequence[str]], hand_ins: Collection[str]) -> Set[str]:
-    """The names of the hand-ins to be graded again, all if no name is given; GradingSetupError for an unknown name."""
-    names = hand_ins if again is not None and not again else [hand_in_of(Path(name).name) for name in again or ()]
-    for name in {*names} - {*hand_ins}:
-        raise GradingSetupError(f"--again {name}: no hand-in of this name{did_you_mean(name, hand_ins)}")
-    return {*names}
-
-
 def class_plan(args: argparse.Namespace, out: Path, share: Path) -> Plan:
     """The given plan and seed, else those of the results so far; GradingSetupError if other outcomes would follow."""
     kept = out / PLAN
-    before = load(kept, int((out / STAMP).read_text())) if kept.is_file() else None
+    before = load(kept, int((out / CLASS_STAMP).read_text())) if kept.is_file() else None
     seeds = (args.seed, before.seed if before else None, random.randint(1, MAX_SEED))
     path = Path(args.plan) if args.plan else kept if before else share / "config" / "grading.yaml"
     plan = load(path, next(seed for seed in seeds if seed is not None))
-    if before and before.outcomes != plan.outcomes and args.again != []:
-        told = "another one may differ in points only, unless --again without names grades everybody with it"
+    if before and before.outcomes != plan.outcomes:
+        told = "another one may differ in points only; for other grades give another folder by --report"
         raise GradingSetupError(f"{out} has the results of the plan {kept} and seed {before.seed}: {told}")
     return plan
 
 
-def grade(gradebook: Gradebook, scheduler: str, workers: int, task: Callable[[Path], None]) -> None:
-    """Grade the remaining hand-ins; if interrupted, write what is done, say so, and raise KeyboardInterrupt."""
-    gradebook.write(running=bool(gradebook.waiting))
+def grade_waiting(gradebook: Gradebook, scheduler: str, workers: int, task: Callable[[Path], None]) -> None:
+    """Grade the remaining hand-ins, and write what is done; if interrupted, say so, and raise KeyboardInterrupt."""
     try:
         if gradebook.waiting:
             from .cluster import connected, done, send_child_errors_to  # importing dask takes half a second
@@ -246,11 +210,10 @@ def grade(gradebook: Gradebook, scheduler: str, workers: int, task: Callable[[Pa
                     orphans.reap_adopted("bwrap")  # one of each node
                     print(gradebook.add(path.name, problem), flush=True)
     except KeyboardInterrupt:
-        gradebook.add_stored()
         with contextlib.suppress(OSError):  # the terminal may be closed
             so_far = f"{len(gradebook.done)} of {gradebook.count} graded"
             print(f"\ninterrupted: {so_far}; run the same command again to continue", file=sys.stderr)
         sys.stderr = open(os.devnull, "w")  # for what dask's objects report when they are deleted
         raise
     finally:
-        gradebook.write(running=False)
+        gradebook.write()

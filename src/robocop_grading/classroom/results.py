@@ -1,34 +1,22 @@
-"""The results of a class: a folder per hand-in, so that an interrupted run can be continued, and an overview."""
+"""The results of a class: a folder per hand-in, so that an interrupted run can be continued."""
 
-import collections
 import json
 import os
 import shutil
 import tempfile
 from dataclasses import dataclass, fields
 from pathlib import Path
-from types import MappingProxyType
-from typing import Any, Counter, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional
 
 from aro_robocop_goto_as.own_path import expect_own
 from robocop_hosting import tree
 
 from ..checks import Failed
-from ..checks.verdict import without_figures
-from ..files.exports import Person
 from ..grades import CheckOutcome, CheckResult, Grade
-from ..plan import PARTS, CheckPlan, Plan, total
-from ..report.write import render
-from .summary import Summary
+from ..plan import CheckPlan, Plan, total
 
-STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
-REFRESH = 5.0  # [s] while grading is in progress ...
-REFRESH_EACH = 0.01  # [s] ... and this for each hand-in: a browser needs longer for a long page
-SHOWN = 200  # hand-ins until one asks for more
-MAX_SHOWN = 300  # characters of a hand-in's problems, and of a cause
-MAX_CAUSES = 3
-WAITING = "waiting"  # the reason why a hand-in has no result yet
-SYMBOLS = {"passed": "●", "failed": "✕", "not reached": "○", "not handed in": "–"}
+HAND_IN_STAMP = "hand_in.json"  # says from which hand-in and plan the report beside it was made
+MAX_TOLD = 300  # characters of a hand-in's problems, and of a cause, on the terminal and in the overview
 
 
 @dataclass(frozen=True)
@@ -66,7 +54,7 @@ class Results:
     def has(self, name: str, digest: str) -> bool:
         """Return whether a hand-in was graded with its present content, plan (but for points) and grader."""
         try:
-            stamp = json.loads((self.folder / name / STAMP).read_text())
+            stamp = json.loads((self.folder / name / HAND_IN_STAMP).read_text())
         except (OSError, ValueError):
             return False
         return bool(stamp.get("made_from") == self._from(digest))
@@ -80,12 +68,12 @@ class Results:
         For a moment between two renames, a reader sees none.
         """
         final = self.folder / name
-        expect_own(final, STAMP)
+        expect_own(final, HAND_IN_STAMP)
         new = Path(tempfile.mkdtemp(prefix=".new-", dir=self.folder))
         new.chmod(0o755)
         shutil.copytree(report, new, dirs_exist_ok=True)
         stamp = {"made_from": self._from(digest), "seconds": round(seconds, 1)}
-        (new / STAMP).write_text(json.dumps(stamp, indent=1))
+        (new / HAND_IN_STAMP).write_text(json.dumps(stamp, indent=1))
         old = new.with_name(f"{new.name}.old")
         if final.exists():
             os.rename(final, old)
@@ -95,7 +83,7 @@ class Results:
     def read(self, name: str) -> StoredGrade:
         """The result that is stored for a hand-in, with the plan's points."""
         folder = self.folder / name
-        raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / STAMP).read_text())
+        raw, stamp = json.loads((folder / "report.json").read_text()), json.loads((folder / HAND_IN_STAMP).read_text())
         checks = [_check(it, self._checks[it["name"]]) for it in raw["checks"]]
         problems, notes = (tuple(raw.get(key, ())) for key in ("problems", "notes"))
         return StoredGrade(name, tuple(checks), problems, notes, seconds=stamp["seconds"])
@@ -116,62 +104,3 @@ def write_atomically(path: Path, text: str) -> None:
     new = path.with_name(f".{path.name}.new")
     new.write_text(text, encoding="utf-8", errors="replace")
     os.replace(new, path)
-
-
-def summary(results: Sequence[StoredGrade], plan: Plan, problems: int) -> Summary:
-    """The class in a few figures; `problems` is the number of hand-ins that have a problem instead of a result."""
-    judged = [result.points for result in results if result.is_judged]
-    return Summary(judged, len(results) - len(judged) + problems, plan.points)
-
-
-def page(
-    title: str,
-    results: Sequence[StoredGrade],
-    plan: Plan,
-    waiting: Mapping[str, str],
-    running: bool,
-    pace: str = "",
-    people: Mapping[str, Person] = MappingProxyType({}),
-) -> str:
-    """The overview; `waiting` maps the names that have no result yet to the reason, `pace` says how fast it goes on."""
-    return render(
-        "overview.html",
-        title=title,
-        results=results,
-        plan=plan,
-        parts=PARTS,
-        waiting=waiting,
-        running=running,
-        figures=summary(results, plan, sum(why != WAITING for why in waiting.values())),
-        pace=pace,
-        full_names={name: person.full_name for name, person in people.items()},
-        refresh=round(REFRESH + REFRESH_EACH * len(results)),
-        shown=SHOWN,
-        most=MAX_SHOWN,
-        symbols=SYMBOLS,
-        cells={"": "<td>", **{it: f"<td class={it.split()[0]}>{symbol}" for it, symbol in SYMBOLS.items()}},
-        checks=list(_checks(results, plan)),
-    )
-
-
-def _checks(results: Sequence[StoredGrade], plan: Plan) -> Iterator[Dict[str, Any]]:
-    """For each check the number of each outcome and the most frequent causes, without those of failures that follow."""
-    counts = [collections.Counter(column) for column in zip(*(result.outcomes(plan) for result in results))]
-    causes: Dict[str, Counter[str]] = collections.defaultdict(collections.Counter)
-    for result in results:
-        for it in result.checks:
-            if it.failure is not None and not it.follows:
-                causes[it.name][it.failure.cause] += 1
-    for check, outcomes in zip(plan.checks, counts or [collections.Counter()] * len(plan.checks)):
-        tried = len(results) - outcomes[CheckOutcome.NOT_HANDED_IN.value] - outcomes[""]
-        frequent = _most_frequent(causes[check.name])
-        yield {"check": check, "outcomes": outcomes, "tried": tried, "causes": frequent}
-
-
-def _most_frequent(causes: Mapping[str, int]) -> List[Tuple[str, int]]:
-    """Causes with their counts; causes that differ only in numbers are counted together."""
-    groups: Dict[str, Tuple[str, int]] = {}  # by what is the same: the first of them, and how many there are
-    for cause, count in causes.items():
-        first, before = groups.get(without_figures(cause), (cause, 0))
-        groups[without_figures(cause)] = first, before + count
-    return sorted(groups.values(), key=lambda group: -group[1])[:MAX_CAUSES]

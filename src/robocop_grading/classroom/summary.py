@@ -1,12 +1,9 @@
-"""A class in a few figures: how many were judged, mean, median and a histogram of their points; time left."""
+"""A class in a few figures: how many were judged, mean and median of their points; time left."""
 
 import math
 import statistics
 from dataclasses import dataclass
-from typing import List, Sequence, Tuple
-
-MAX_BARS = 10  # of the histogram, besides the one for full marks
-MAX_BAR = 40  # characters
+from typing import Sequence
 
 
 @dataclass(frozen=True)
@@ -29,26 +26,6 @@ class Summary:
             return ""
         mean, median = statistics.mean(self.points), statistics.median(self.points)
         return f"mean {mean:.2f}, median {median:g} of {self.available:g} points"
-
-    @property
-    def histogram(self) -> List[Tuple[str, int]]:
-        """Ranges of points, the last one of full marks only, and the number of hand-ins in each."""
-        width = max(1, math.ceil(self.available / MAX_BARS))
-        edges = [*(width * number for number in range(math.ceil(self.available / width))), self.available]
-        bars = []
-        for low, high in zip(edges, [*edges[1:], math.inf]):
-            label = f"{low:g} to < {high:g}" if high < math.inf else f"{low:g}"
-            bars.append((label, sum(low <= points < high for points in self.points)))
-        return bars
-
-    def lines(self) -> List[str]:
-        """All of it for a terminal."""
-        highest = max([1, *(count for _, count in self.histogram)])
-        bars = [
-            f"{label:>10} {count:4} {'#' * math.ceil(MAX_BAR * count / highest)}".rstrip()
-            for label, count in self.histogram
-        ]
-        return [self.counts, *([self.averages, *bars] if self.points else [])]
 
 
 def pace(done: int, remaining: int, seconds: float) -> str:

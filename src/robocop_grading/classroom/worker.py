@@ -48,7 +48,7 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
             problem = str(error)
             tracebacks: Tuple[str, ...] = ()
             if not isinstance(error, RobocopError):
-                problem = f"could not be graded, see {faults.FILE}: {error!r}{faults.changed_sources()}"
+                problem = f"could not be graded, see {faults.FILE}: {error!r}"
                 tracebacks = (traceback.format_exc(),)
             problem = shortened(problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", ""), MAX_PROBLEM)
             write(Grade(name, (), (problem,), tuple(notes), tracebacks=tracebacks), plan, {}, report)

@@ -1,4 +1,4 @@
-"""Writes a grade as report.html, summary.md and report.json, and as the files that the hosts of courses read."""
+"""Writes a grade as report.html and report.json, and as the files that the hosts of courses read."""
 
 import dataclasses
 import json
@@ -11,7 +11,7 @@ from urllib.parse import quote
 
 import jinja2
 
-from aro_robocop_goto_as.cli.program import ROOT
+from aro_robocop_goto_as.names import ROOT
 
 from .. import faults
 from ..checks import CHECKS
@@ -24,9 +24,8 @@ from ..scenarios import BRIDGE_SCENARIOS, START
 from ..texts import printable, printable_lines, shortened
 
 SCENARIO_PLOTS = {"server": ("track", "distances", "errors", "speeds", "states"), "bridge": ("track",)}
-MARKS = {"passed": "✅", "failed": "❌", "not reached": "➖", "not handed in": "➖"}  # of outcomes in the summary
 LEAD = 1.0  # [s] before a failure, from where on a replay shows it
-MAX_LINES = 60  # of a node's output in the report
+MAX_OUTPUT = 60  # of a node's output in the report
 
 
 def make_report_folder(folder: Path, stamp: str) -> Path:
@@ -52,9 +51,6 @@ def write(
     (folder / faults.FILE).unlink(missing_ok=True)  # an earlier report's
     if grade.tracebacks:
         faults.keep(grade.tracebacks, folder)
-    # An HTML block without empty lines, so that GitHub does not read texts of the submission as Markdown.
-    summary = render("summary.html", grade=grade, marks=MARKS)
-    (folder / "summary.md").write_text(summary, encoding="utf-8", errors="replace")
     replay = partial(_replay, folder, moves)
     page = render(
         "report.html",
@@ -175,7 +171,7 @@ def _scenarios(
                 "failed": failed,
                 "replay": replay(part, record),
                 "plots": [svg for svg in (_plot(plot, record, []) for plot in plots) if svg],
-                "lines": record.lines[:MAX_LINES],
+                "lines": record.lines[:MAX_OUTPUT],
             }
 
 
@@ -210,11 +206,9 @@ _PAGES = jinja2.Environment(
     lstrip_blocks=True,
 )
 _PAGES.filters.update(
-    css=lambda outcome: outcome.partition(":")[0].split()[0],  # the class of an outcome
+    css=lambda outcome: outcome.partition(":")[0].partition(" ")[0],  # the class of an outcome
     of=lambda checks: "{:g} / {:g}".format(*scored(checks)),
-    one_line=printable,
     points=lambda points: "–" if points is None else f"{points:g}",
-    printable=printable_lines,
     shortened=shortened,
     quoted=lambda name: quote(os.fsencode(name)),  # a file's name, whatever bytes it consists of, as part of a URL
 )

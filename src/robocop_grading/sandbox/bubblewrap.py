@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from aro_robocop_goto_as.cli.program import ROOT
+from aro_robocop_goto_as.names import ROOT
 
 from ..errors import GradingError, GradingSetupError, UngradableError
 from . import limits

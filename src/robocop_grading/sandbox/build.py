@@ -7,8 +7,7 @@ import subprocess
 from pathlib import Path
 from typing import IO, Dict, Iterable, Iterator, Mapping, Optional, Sequence
 
-from aro_robocop_goto_as.process import child
-from robocop_hosting import tree
+from robocop_hosting import child, tree
 from robocop_hosting.errors import HostingError
 from robocop_hosting.package import MAX_NAMED
 from robocop_hosting.scripts import files_below

@@ -13,8 +13,8 @@ from typing import Callable, List, Optional, Sequence
 
 import psutil
 
-from aro_robocop_goto_as.process.child import kill_tree
 from robocop_hosting import tree
+from robocop_hosting.child import kill_tree
 from robocop_hosting.errors import HostingError
 
 from ..agent.processes import children_of, descendants_of

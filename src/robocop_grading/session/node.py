@@ -7,7 +7,7 @@ import struct
 from subprocess import PIPE, STDOUT
 from typing import Any, Callable, List
 
-from aro_robocop_goto_as.process import child
+from robocop_hosting import child
 
 from .. import record as rec
 from ..agent import wire

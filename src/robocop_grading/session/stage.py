@@ -20,7 +20,7 @@ from aro_robocop_goto_as.ros.share import share
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics
 from aro_robocop_goto_as.sensors.lidar import SCAN
 from aro_robocop_goto_as.sensors.odometry import ODOM
-from aro_robocop_goto_as.simulation.agenda import Due, Subscriptions
+from aro_robocop_goto_as.simulation.agenda import StepEvents, Subscriptions
 from aro_robocop_goto_as.simulation.factory import make_simulator
 from aro_robocop_goto_as.simulation.params import SimParams
 
@@ -140,7 +140,7 @@ class Stage:
         wanted = {sensor for topic, sensor in self._sensors.items() if self.topics.node_subscribes_to(topic)}
         return {sensor: [0] for sensor in sorted({ODOM, *wanted})}
 
-    def _publish(self, due: Due) -> None:
+    def _publish(self, due: StepEvents) -> None:
         """Send what is due on a step to the submission, and write it to the bag."""
         if self.odd_scan and due.of(SCAN):
             ranges = self.sim.sensors.lidar.ranges

@@ -11,7 +11,7 @@ from aro_robocop_goto_as.ros.publishing.packed import PackedMessage
 from aro_robocop_goto_as.ros.sim.sensor_messages import NO_VARIANCES, packed_odometry
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics, packed_clock
 from aro_robocop_goto_as.sensors.odometry import ODOM
-from aro_robocop_goto_as.simulation.agenda import Due
+from aro_robocop_goto_as.simulation.agenda import StepEvents
 from aro_robocop_goto_as.simulation.simulator import Simulator
 
 StepMessage = Tuple[str, Any, bytes]  # topic, type, and the message as it is sent, with its length
@@ -25,9 +25,9 @@ class StepMessages:
         odometry = packed_odometry(robot.world, robot.footprint, NO_VARIANCES, truth.poses[0], truth.twists[0])
         self._simulator, self._topics = simulator, topics
         self._truth, self._clock = ("/ground_truth_odom", Odometry, odometry), ("/clock", Clock, packed_clock())
-        self._prepared: Dict[Due, Tuple[List[Tuple[str, Any, Any]], Batch]] = {}
+        self._prepared: Dict[StepEvents, Tuple[List[Tuple[str, Any, Any]], Batch]] = {}
 
-    def of(self, due: Due) -> List[StepMessage]:
+    def of(self, due: StepEvents) -> List[StepMessage]:
         """The messages that are due on the simulator's present step."""
         if due not in self._prepared:
             messages = [(topic.name, topic.data_class, message) for topic, message in self._topics.messages_due(due)]

@@ -66,9 +66,11 @@ class LabFigures(SystemTest):
         self.assertGreater(max(angles), 0.5)
 
     def test_tuning_with_a_high_gain(self):
-        (reached,) = printed(r"by more than a radian, back by a quarter of a radian, and needs about (\d+) s")
+        (reached,) = printed(
+            r"by more than a radian, then to and fro, each time by a little less, and needs about (\d+) s"
+        )
         took, _, angles, message = self.drive(*TO_THE_RIGHT, angular_gain=20.0, max_angular_velocity=2.8)
         self.assertTrue(message.startswith("REACHED"), message)
         self.assertAlmostEqual(took, reached, delta=0.7)
         self.assertGreater(max(angles), 1.0)
-        self.assertAlmostEqual(min(angles[angles.index(max(angles)) :]), -0.25, delta=0.15)
+        self.assertTrue(-max(angles) < min(angles[angles.index(max(angles)) :]) < -0.8, angles)

@@ -4,24 +4,18 @@ import re
 import shlex
 import socket
 
-import genpy
 import pytest
-import rosbag
 from command import ROOT, dry_run, robocop, x_server
-from rosgraph_msgs.msg import Clock
 
-from aro_robocop_goto_as.cli import program
-from aro_robocop_goto_as.cli.commands import COMMANDS
-from aro_robocop_goto_as.cli.system_commands import web_arguments
-from aro_robocop_goto_as.process.ports import free_port
+from aro_robocop_goto_as.cli.commands import COMMANDS, web_arguments
+from robocop_hosting.ports import free_port
 
 LOCAL = "http://localhost:11399"
 LAUNCH = "/launch/robocop_launch.py --quiet aro_robocop_goto_as"
 
 
-def test_help_lists_every_command():
-    described = set(re.findall(r"(?m)^  ([a-z][a-z-]*)", robocop("help").stdout))
-    assert described == {*COMMANDS} - {"--version"}
+def test_help_describes_every_command_whose_arguments_are_checked():
+    assert set(COMMANDS) < set(re.findall(r"(?m)^  ([a-z][a-z-]*)", robocop("help").stdout))
 
 
 def test_clean_with_an_argument_removes_nothing():
@@ -96,16 +90,6 @@ def test_without_a_display_the_web_page_replaces_rviz_unless_one_of_them_was_cho
     command, _, messages = dry_run("run", word)
     assert command.endswith(f"{LAUNCH} robocop_goto_as.launch {started}")
     assert message in messages and ("no usable display" in messages) is bool(message)
-
-
-def test_the_lab_starts_even_if_the_web_page_can_not_be_installed(monkeypatch, capsys):
-    monkeypatch.setenv("ROBOCOP_DRY_RUN", "1")
-    monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.setattr(program, "set_up", lambda *parts: "web" not in parts)
-    monkeypatch.setattr(program, "start_launcher", lambda *words: print(*words))
-    COMMANDS["run"](["world:=empty"])
-    said = capsys.readouterr()
-    assert said.out.endswith(" rviz:=false world:=empty\n") and "the web page could not be installed" in said.err
 
 
 def test_without_a_display_pybullets_window_is_refused():
@@ -184,13 +168,6 @@ def test_a_recording_gets_the_ending_of_a_bag_and_never_overwrites_one(tmp_path,
         assert (done.returncode, done.stderr) == (1, f"robocop: {reason}\n")
 
 
-def test_record_without_a_running_system_says_what_to_start(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    done = robocop("record", ROS_MASTER_URI=f"http://localhost:{free_port()}")
-    assert done.returncode == 1
-    assert done.stderr.endswith("no ROS system is running; start ./robocop run in another terminal first\n")
-
-
 def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
     command, _, messages = dry_run("replay", f"{tmp_path}/run.bag", "rate:=2")
     assert command.endswith(f"{LAUNCH} replay.launch bag:={tmp_path}/run.bag rviz:=false rate:=2")
@@ -198,16 +175,9 @@ def test_replay_plays_a_bag_in_the_page_and_refuses_what_is_none(tmp_path):
     assert command.endswith(f"{LAUNCH} replay.launch bag:={tmp_path}/run.bag rviz:=false start:=12.5")
     assert dry_run("replay", f"{tmp_path}/run.bag", "rate:=2", "--start", "12.5")[0].endswith(" rate:=2 start:=12.5")
     assert "would set up: run web\n" in messages
-    assert "--start: expected seconds" in robocop("replay", "a", "--start", "soon", ROBOCOP_DRY_RUN="1").stderr
-    assert "rate: expected a number from 0.01 on" in robocop("replay", "a", "rate:=x", ROBOCOP_DRY_RUN="1").stderr
-    assert f"replay: {__file__} is no bag of ROS 1; expected" in robocop("replay", __file__).stderr
-    with rosbag.Bag(str(tmp_path / "whole.bag"), "w") as whole:
-        whole.write("/clock", Clock(), genpy.Time(100))
-        whole.write("/clock", Clock(), genpy.Time(107, 500_000_000))
-    too_late = robocop("replay", f"{tmp_path}/whole.bag", "--start", "7.6").stderr
-    assert too_late == f"robocop: replay: --start 7.6: {tmp_path}/whole.bag ends 7.5 s after its beginning\n"
-    (tmp_path / "cut.bag").write_bytes((tmp_path / "whole.bag").read_bytes()[:4200])
-    assert "cut.bag is not complete" in robocop("replay", f"{tmp_path}/cut.bag").stderr
+    for words in (("--start", "soon"), ("--start",), ("rate:=x",)):
+        done = robocop("replay", "a", *words, ROBOCOP_DRY_RUN="1")
+        assert done.returncode == 1 and ": expected a number, got " in done.stderr
 
 
 def test_foreign_package_is_started_from_its_absolute_path(tmp_path):
@@ -221,14 +191,6 @@ def test_foreign_package_is_started_from_its_absolute_path(tmp_path):
         f"/robocop_sim_with.py {tmp_path} --verbose"
     )
     assert "--with: expected the folder of a catkin package" in robocop("sim", "--with").stderr
-
-
-def test_failed_set_up_ends_the_command(monkeypatch):
-    monkeypatch.setattr(program, "SCRIPT", "false")
-    with pytest.raises(SystemExit) as ended:
-        program.need("web")
-    assert ended.value.code == 1
-    assert not program.set_up()
 
 
 @pytest.mark.parametrize(

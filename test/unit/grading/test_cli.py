@@ -30,7 +30,7 @@ def test_report_is_named_after_what_was_given(given, folder, tmp_path, monkeypat
     assert cli.report_folder(REPORTS, given, False) == REPORTS / f"{folder}-only"
 
 
-def status(error, tmp_path, monkeypatch, capsys, *arguments):
+def status(error, tmp_path, monkeypatch, capsys, *arguments, path="lab"):
     """The exit status of a grading that ends with an error, or None to let it begin; and what it prints."""
 
     def fail(*_):
@@ -38,7 +38,7 @@ def status(error, tmp_path, monkeypatch, capsys, *arguments):
 
     monkeypatch.setenv("ROBOCOP_STATE", str(tmp_path))
     monkeypatch.setenv("ROBOCOP_SHARE", ROOT)
-    monkeypatch.setattr("sys.argv", ["robocop_grade.py", "lab", *arguments])
+    monkeypatch.setattr("sys.argv", ["robocop_grade.py", path, *arguments])
     if error is not None:
         monkeypatch.setattr(cli, "open_sandbox", fail)
     with pytest.raises(SystemExit) as ended:
@@ -74,9 +74,18 @@ def test_a_full_disk_does_not_make_an_error_of_the_grader_a_grade(tmp_path, monk
     [
         (["--only", "cancel,next_goal,nosuch"], "robocop grade: --only nosuch: "),
         (["--plan", "/no/such.yaml"], "robocop grade: /no/such.yaml: can't be read"),
+        (["--plan", "/dev/zero"], "robocop grade: /dev/zero: expected an ordinary file"),
+        (["--report", "/proc/here"], "robocop grade: the report can't be written to /proc/here: "),
         (["--seed", "-1"], "robocop grade: --seed -1: expected a number from 0"),
     ],
 )
 def test_value_that_is_wrong_is_named(arguments, told, tmp_path, monkeypatch, capsys):
     code, printed = status(None, tmp_path, monkeypatch, capsys, *arguments)
     assert code == 2 and printed.startswith(told) and printed.count("/no/such.yaml") <= 1
+    assert printed.count("\n") == 1
+
+
+@pytest.mark.parametrize("path", ["/usr/bin/env", "/"])
+def test_submission_among_the_systems_files_is_refused(path, tmp_path, monkeypatch, capsys):
+    code, printed = status(None, tmp_path, monkeypatch, capsys, path=path)
+    assert (code, printed.count("\n")) == (4, 1) and f"{path}: expected a submission outside /usr" in printed

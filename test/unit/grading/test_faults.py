@@ -1,7 +1,6 @@
 """An exception in the grader costs an explanation, never a grade, and its traceback is in the report's folder."""
 
 import functools
-import os
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +8,7 @@ from pathlib import Path
 import pytest
 from grading_records import PLAN, RIGHT, graded
 
-from robocop_grading import cli, faults
+from robocop_grading import cli
 from robocop_grading.checks import CHECKS
 from robocop_grading.checks.consequences import FOLLOWS
 from robocop_grading.judge import judge
@@ -61,12 +60,3 @@ def test_grade_that_ends_with_an_exception_names_the_file_with_its_traceback(tmp
     assert "could not be graded: KeyError('missing')" in shown
     (file,) = re.findall("its traceback is in (.*)", shown)
     assert "KeyError: 'missing'" in Path(file).read_text()
-
-
-def test_sources_that_change_while_they_are_in_use_are_named(tmp_path, monkeypatch):
-    monkeypatch.setattr(faults, "SOURCES", tmp_path)
-    (tmp_path / "module.py").touch()
-    os.utime(tmp_path / "module.py", (0.0, faults.STARTED - 1.0))
-    assert faults.changed_sources() == ""
-    os.utime(tmp_path / "module.py", (0.0, faults.STARTED + 1.0))
-    assert "as by git pull: start it again" in faults.changed_sources()

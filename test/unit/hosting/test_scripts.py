@@ -94,10 +94,9 @@ def test_two_equal_candidates_are_refused_by_name(tmp_path, names):
         (f"{BEGIN}\n", []),
         (f"{BEGIN}\r\n", ["has Windows line endings (CRLF)"]),
         (f"\ufeff{BEGIN}\n", ["begins with a byte-order mark"]),
-        (f"\n{BEGIN}\n", ["has its #! line below other lines"]),
-        (f"# author\n{BEGIN}\n", ["has its #! line below other lines"]),
-        ("import rospy\n", ["has no #! line"]),
-        ("", ["has no #! line"]),
+        (f"\n{BEGIN}\n", ["does not begin with a #! line"]),
+        ("import rospy\n", ["does not begin with a #! line"]),
+        ("", ["does not begin with a #! line"]),
     ],
 )
 def test_reason_why_linux_can_not_start_a_script_is_named(tmp_path, content, expected):

@@ -87,7 +87,7 @@ def test_script_that_roslaunch_can_not_start_is_refused_with_the_remedy_and_left
     assert tmp_path.joinpath("a.py").stat().st_mode & 0o111 == 0
     for name in ("b.py", "c.py"):
         (tmp_path / name).chmod(0o755)
-    with pytest.raises(HostingError, match="b.py has its #! line below other lines, so roslaunch can't start it"):
+    with pytest.raises(HostingError, match="b.py does not begin with a #! line, so roslaunch can't start it"):
         expect_startable(tmp_path / "b.py")
     expect_startable(tmp_path / "c.py")
     assert "c.py is started by '/bin/python', which the lab may not have" in capsys.readouterr().err

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from support import world_named
 
 from aro_robocop_goto_as.geometry import Pose2D
-from aro_robocop_goto_as.raycast import grid_index
+from aro_robocop_goto_as.raycast import tiles
 from aro_robocop_goto_as.raycast.beams import BeamPlane, Beams, BeamScene
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
-from aro_robocop_goto_as.raycast.grid_index import Tiles
+from aro_robocop_goto_as.raycast.tiles import Tiles
 from aro_robocop_goto_as.world.model import World
 
 Pose = Tuple[float, float, float]
@@ -68,11 +68,11 @@ def test_beam_aimed_at_the_end_of_a_segment_hits_it(beams, pose, data, away, sla
 @given(
     fans, segments, circles, poses, st.floats(0.5, 30.0), st.sampled_from([(1.0, 1 << 20), (8.0, 1 << 20), (8.0, 9)])
 )
-def test_scan_with_a_grid_index_is_bit_identical_to_one_without(beams, walls, posts, pose, max_range, size):
+def test_scan_with_tiles_is_bit_identical_to_one_without(beams, walls, posts, pose, max_range, size):
     scale, max_tiles = size
     cut = cut_of(scale * np.array(walls, float), scale * np.array(posts, float))
     every = beams.cast(np.array([pose]), cut, reach=max_range)
-    with mock.patch.object(grid_index, "MAX_TILES", max_tiles):
+    with mock.patch.object(tiles, "MAX_TILES", max_tiles):
         cut.tiles = Tiles(cut.segments)
     assert beams.cast(np.array([pose]), cut, reach=max_range).tobytes() == every.tobytes()
 

@@ -32,9 +32,7 @@ def test_limits_and_timeout_are_the_models_own_unless_a_parameter_overrides_them
     assert limits_from(given, burger) == (0.1, 2.84, 2.5, 3.2, 0.0)
 
 
-def test_command_is_approached_within_its_acceleration_and_dropped_after_its_timeout(
-    simulator,
-):
+def test_command_is_approached_within_its_acceleration_and_dropped_after_its_timeout(simulator):
     sim = simulator("empty", drive="kinematic", max_linear_acceleration=1.2, cmd_vel_timeout=0.5)
     sim.command(Twist2D(0.2))
     speeds = []

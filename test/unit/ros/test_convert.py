@@ -12,7 +12,7 @@ from aro_robocop_goto_as.ros import convert
 QUARTER_TURN = math.sqrt(0.5)
 
 
-def turned(length: float) -> Pose:
+def turned(length):
     """A quarter turn to the left, by a quaternion of this length."""
     return Pose(Point(1.0, 2.0, 0.0), Quaternion(0.0, 0.0, length * QUARTER_TURN, length * QUARTER_TURN))
 

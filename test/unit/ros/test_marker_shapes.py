@@ -7,7 +7,7 @@ from geometry_msgs.msg import Point
 from visualization_msgs.msg import Marker, MarkerArray
 
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, lifted
-from aro_robocop_goto_as.ros.marker_shapes import MarkerStore, obstacles, to_shape
+from aro_robocop_goto_as.ros.marker_shapes import MarkerStore, to_shape
 from aro_robocop_goto_as.web.scene import BOX
 
 
@@ -56,9 +56,3 @@ def test_a_marker_that_becomes_impossible_is_no_longer_shown(store):
 )
 def test_incomplete_triangles_and_lines_are_not_shown(kind, corners):
     assert to_shape(marker(1, kind=kind, points=[Point()] * corners)) is None
-
-
-def test_obstacles_are_the_simulators_markers_without_its_robots():
-    store = MarkerStore()
-    store.apply(MarkerArray([marker(1, namespace="world"), marker(9, namespace="robots")]))
-    assert [shape.kind for shape, _ in obstacles(store.placed(lambda frame: Pose3D()))] == [BOX]

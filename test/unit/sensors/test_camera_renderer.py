@@ -1,7 +1,5 @@
 """Camera images agree with the geometry of the world."""
 
-from typing import Callable
-
 import numpy as np
 import pytest
 from support import analytic_distances, model_named, world_named
@@ -9,10 +7,8 @@ from support import analytic_distances, model_named, world_named
 from aro_robocop_goto_as.geometry import Pose2D, compose3, lifted, rotation_matrix
 from aro_robocop_goto_as.sensors.camera_image import points_of
 from aro_robocop_goto_as.shapes import Box
-from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.model import World
 
-Make = Callable[..., Simulator]
 KINEMATIC = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}
 WITH_CAMERA = ["burger_rgbd", "waffle", "waffle_pi", "turtlebot2"]
 TOLERANCE = 0.003  # [m] of depth on flat walls; larger at a cylinder's edge, which is seen at a slant

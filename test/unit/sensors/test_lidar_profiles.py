@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from typing import Callable
 
 import numpy as np
 import pytest
@@ -12,9 +11,6 @@ from aro_robocop_goto_as.sensors.lidar import RangeErrors
 from aro_robocop_goto_as.sensors.lidar_profiles import PROFILES
 from aro_robocop_goto_as.sensors.sensor import Episode
 from aro_robocop_goto_as.simulation.params import SimParams
-from aro_robocop_goto_as.simulation.simulator import Simulator
-
-Make = Callable[..., Simulator]
 
 
 def _measured(profile, distances, **changes):

@@ -1,17 +1,15 @@
 """What holds for every engine, model and world: one test a contract, over all of their combinations."""
 
+import itertools
 import math
 from dataclasses import replace
-from typing import Callable
 
 import numpy as np
 import pytest
 from support import analytic_distances, everything, lean, model_named, world_named
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Twist2D, compose, wrap_angle
-from aro_robocop_goto_as.simulation.simulator import Simulator
 
-Make = Callable[..., Simulator]
 ENGINES = {
     "wheels": {"drive": "wheels"},
     "kinematic": {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60},
@@ -26,8 +24,12 @@ every_model = pytest.mark.parametrize("model", MODELS)
 
 
 def every_combination(test):
-    """Run a test for every engine, model and world."""
-    return every_engine(every_model(pytest.mark.parametrize("world", WORLDS)(test)))
+    """Run a test for every engine, model and world; without --all for a Burger in each, and for each model in one."""
+    cases = [
+        pytest.param(model, world, marks=() if model == "burger" or world == "stage_4" else pytest.mark.slow)
+        for model, world in itertools.product(MODELS, WORLDS)
+    ]
+    return every_engine(pytest.mark.parametrize("model, world", cases)(test))
 
 
 @pytest.fixture
@@ -106,9 +108,7 @@ def test_each_sensor_keeps_its_rate_and_stamps_are_those_of_its_period(make):
 
 
 @every_combination
-def test_robot_that_is_asked_for_too_much_accelerates_to_its_limits_within_its_limits(
-    make,
-):
+def test_robot_that_is_asked_for_too_much_accelerates_to_its_limits_within_its_limits(make):
     sim = make()
     limits, dt = sim.fleet.limits[0], 1.0 / sim.rate
     speeds = [0.0]

@@ -80,9 +80,7 @@ def test_what_a_job_changes_is_published_once(change, announced):
 
 
 @pytest.mark.parametrize("change", [lambda sim: sim.place(ORIGIN), lambda sim: sim.reset()])
-def test_command_that_waits_for_its_tick_is_dropped_when_its_robot_is_placed_or_all_are_reset(
-    change,
-):
+def test_command_that_waits_for_its_tick_is_dropped_when_its_robot_is_placed_or_all_are_reset(change):
     owner = Owner(0.25, real_time_factor=0.0, sync="lockstep")
     owner.running.controllers.command(NODE, AHEAD)
     change(owner.simulator)

@@ -2,17 +2,14 @@
 
 import math
 from dataclasses import replace
-from typing import Callable
 
 import pytest
 from support import ORIGIN, driven, everything
 
 from aro_robocop_goto_as.errors import PlaceError
+from aro_robocop_goto_as.floor_plan.occupancy import FREE, OCCUPIED
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D, Twist2D, compose
-from aro_robocop_goto_as.raycast.occupancy import FREE, OCCUPIED
-from aro_robocop_goto_as.simulation.simulator import Simulator
 
-Make = Callable[..., Simulator]
 KINEMATIC = {"drive": "kinematic", "physics_rate": 60, "imu_rate": 60}
 DRIVES = [{"drive": "wheels"}, KINEMATIC]
 

@@ -5,10 +5,10 @@ import re
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
-from ...errors import RobocopError
+import rosgraph
+
 from ...names import COMMAND_VARIABLE, SERVER, WEB, robocop
 from ...param_loading import from_dict
-from ...probes import master, x_display
 from ...simulation.params import SimParams
 from ...web.access import default_host, is_loopback, url
 from ...web.params import WebParams
@@ -26,8 +26,6 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
     The nodes' messages are shown on the screen or go to files in `logs`.
     """
     nodes = {node.name for node in running}
-    if "rviz" in nodes and not x_display.answers():  # its node has said so, and waits
-        nodes.remove("rviz")
     given = simulator or {}
     rows = [] if simulator is None else [*_simulated(given)]
     robots = sorted({node.namespace.strip("/") for node in running if node.name == SERVER} - {""})
@@ -60,8 +58,9 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
 
 def _command() -> str:
     """The command line of ./robocop in a second terminal, which may not know this one's master."""
-    uri, command = master.master_uri(), robocop()
-    is_known = uri == master.DEFAULT_URI or COMMAND_VARIABLE in os.environ  # a container has one environment
+    uri, command = rosgraph.get_master_uri(), robocop()
+    is_default = uri == rosgraph.rosenv.DEFAULT_MASTER_URI
+    is_known = is_default or COMMAND_VARIABLE in os.environ  # a container has one environment
     return command if is_known else f"ROS_MASTER_URI={uri} {command}"
 
 
@@ -87,11 +86,8 @@ def _page(arguments: str) -> str:
 
 
 def _simulated(given: Dict[str, Any]) -> List[Tuple[str, str]]:
-    """World and robots; nothing where the simulator refuses its parameters and says why."""
-    try:
-        p = from_dict(SimParams, given, "the simulator's parameters")
-    except RobocopError:
-        return []
+    """World, robots, and whether transforms are lacking."""
+    p = from_dict(SimParams, given, "the simulator's parameters")
     world = p.world.world
     if p.world.moving:
         world += ", moving:=true; obstacles may move into the robot's way, moving:=false stops them"

@@ -11,15 +11,16 @@ import time
 import tty
 from typing import Iterator, List
 
+import rosgraph
 import rospy
 from geometry_msgs.msg import Twist, Vector3
 
 from ...errors import RobocopError, TeleopError
 from ...geometry import STANDSTILL, Twist2D
 from ...names import absolute, robocop
-from ...probes import master
 from ...process import signals
 from ...process.start import typed
+from .. import graph
 from ..publishing.publisher import publisher
 from ..waiting import wait_until
 
@@ -136,10 +137,9 @@ def main() -> None:
     try:
         if not os.isatty(terminal):
             raise TeleopError("the keyboard is read from the terminal, but standard input is not one")
-        if not master.master_answers(master.master_uri()):
-            raise TeleopError(
-                f"no ROS master answers at {master.master_uri()}; start the system there, by {robocop()} run"
-            )
+        if not graph.master_answers():
+            uri = rosgraph.get_master_uri()
+            raise TeleopError(f"no ROS master answers at {uri}; start the system there, by {robocop()} run")
         # Wall time: a paused simulator must not keep keys from being read.
         rospy.init_node("robocop_teleop", anonymous=True, disable_signals=True, disable_rostime=True)
         teleop = KeyboardTeleop(absolute(args.robot, "cmd_vel"), args.linear, args.angular)

@@ -1,86 +1,57 @@
 """robocop_rviz_goto_ac: RViz's 2D Nav Goal -> tf2 -> GoToPosition goal, and a periodic status report."""
 
-import logging
 import threading
-import time
 from typing import Callable, Optional
 
-import actionlib
 import rospy
-from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import Point, PoseStamped
-from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 
-from aro_robocop_goto_as.msg import (
-    GoToPositionAction,
-    GoToPositionFeedback,
-    GoToPositionGoal,
-    GoToPositionResult,
-)
+from aro_robocop_goto_as.msg import GoToPositionFeedback
 
 from ...errors import FrameError
 from ...names import ACTION, BRIDGE, position_text
 from ..node_main import answer_help, load_params, node
-from . import discovery
+from .follower import Follower
 from .goal_frame import GoalTransformer
-from .goal_states import STATES, UNFINISHED, ending
 from .params import BridgeParams
 
-SERVER_TIMEOUT = 10.0  # [s, wall] without the server until the status says what to do; it starts within a few seconds
-UNLOGGED = (
-    "Detected jump back",  # tf2's warning at each message while two nodes publish /clock; the server tells of them once
-    "Got a transition callback on a goal handle",  # actionlib's error if a goal starts before send_goal() has returned
-)
-IDLE_POLL = 0.1  # [s, wall] between two checks for shutdown while no click arrives
+POLL = 0.1  # [s, wall] between two checks for a newer click, for the server and for shutdown
 
 
 class Bridge:
-    """Callbacks store the newest click; the main thread transforms and sends it; a timer reports the status."""
+    """A callback stores the newest click, the main thread makes a goal of it, and a timer reports the status."""
 
     def __init__(self, p: BridgeParams) -> None:
         self.p = p
-        self.odom: Optional[Odometry] = None
         self.click = PoseStamped()
         self.clicked = threading.Event()  # there is a click that is not served yet
-        self.where = ""  # the place of the current goal as it was clicked
-        self.waiting = ""  # that of a goal which is kept for a server that comes later
-        self.feedback: Optional[GoToPositionFeedback] = None  # of the current goal
-        self.ending = ""  # of the last goal: state and message
-        self.has_ended = threading.Event()  # the goal that was sent last
+        self.where = ""  # the place of the newest goal as it was clicked
+        self.feedback: Optional[GoToPositionFeedback] = None  # of this goal
         self.sending = threading.Lock()  # held while a goal is being sent: it is reported only afterwards
         self.last_status = ""
-        self.last_seen = time.monotonic()  # when the server was up
-        self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout, lambda: self.odom)
-        self.client = actionlib.SimpleActionClient(ACTION, GoToPositionAction)
+        self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout)
+        self.goal = Follower(ACTION, self.on_feedback)
         self.status = rospy.Publisher("~status", String, queue_size=1, latch=True)
-        rospy.Subscriber("odom", Odometry, self.on_odom, queue_size=1)
         rospy.Subscriber("move_base_simple/goal", PoseStamped, self.on_click, queue_size=10)
-        rospy.Subscriber(f"{ACTION}/cancel", GoalID, self.on_cancel, queue_size=10)
         rospy.Timer(rospy.Duration.from_sec(p.status_period), self.report, reset=True)
-
-    def on_odom(self, message: Odometry) -> None:
-        """Store odometry; a callback."""
-        self.odom = message
 
     def on_click(self, message: PoseStamped) -> None:
         """Store a click; a callback."""
         self.click = message
         self.clicked.set()
 
-    def on_cancel(self, message: GoalID) -> None:
-        """Drop a goal that waits for its server when all goals are cancelled; a callback."""
-        if not message.id:
-            self.waiting = ""
+    def on_feedback(self, feedback: GoToPositionFeedback) -> None:
+        """Store feedback; a callback."""
+        self.feedback = feedback
 
     # -- clicks, in the main thread --
 
     def run(self) -> None:
         """Forward clicks until shutdown."""
+        self.report()  # also where simulated time stands still, so that no timer fires
         while not rospy.is_shutdown():
-            if not self.clicked.wait(IDLE_POLL):
-                if not self.last_status and time.monotonic() - self.last_seen > SERVER_TIMEOUT:
-                    self.report()  # simulated time does not pass, and so no timer fires
+            if not self.clicked.wait(POLL):
                 continue
             self.clicked.clear()
             click = self.click
@@ -103,91 +74,60 @@ class Bridge:
         return click.pose.position
 
     def replace_goal(self, position: Point, click: PoseStamped) -> None:
-        """Cancel the earlier goal, wait for its end, then send this one, unless a newer click arrives meanwhile.
+        """Wait for the server, cancel the earlier goal, send this one; a newer click ends this, and takes its place.
 
         Reports name the place that was clicked, as the view shows it.
         """
         where = position_text(click.pose.position.x, click.pose.position.y, self.transformer.frame_of(click))
-        if not discovery.is_up(self.client) and not self.wait_for_server(where):
-            return
+        self.wait_for_server(where)
         self.cancel_goal()
         if self.clicked.is_set() or rospy.is_shutdown():
             return
         with self.sending:
             self.where = where
             self.feedback = None
-            self.has_ended.clear()
-            self.client.send_goal(GoToPositionGoal(position), done_cb=self.on_done, feedback_cb=self.on_feedback)
+            self.goal.send(position)
         rospy.loginfo(
-            "goal sent: %s, for the server %s", self.where, position_text(position.x, position.y, self.p.goal_frame)
+            "goal sent: %s, for the server %s", where, position_text(position.x, position.y, self.p.goal_frame)
         )
         self.report()
 
-    def wait_for_server(self, where: str) -> bool:
-        """Keep a goal until its server is up; False if a newer click or a cancel comes first, or the node ends."""
-        self.waiting = where
-        rospy.logwarn("%s; the goal is sent when the server is up", discovery.absence(ACTION))
-        self.report()
-        while self.waiting and not discovery.is_up(self.client):
-            if self.clicked.wait(IDLE_POLL) or rospy.is_shutdown():
-                break
-        kept, self.waiting = bool(self.waiting), ""
-        if not kept:
-            rospy.loginfo("goal cancelled before its server was up: %s", where)
-            self.report()
-        return kept and not (self.clicked.is_set() or rospy.is_shutdown())
+    def wait_for_server(self, where: str) -> None:
+        """Wait as the client's wait_for_server() does, but only until there is a newer click or the node ends."""
+        if not self.goal.is_up():
+            rospy.logwarn("the goal %s is sent when %s is up", where, ACTION)
+        while not (self.goal.is_up() or rospy.is_shutdown() or self.clicked.wait(POLL)):
+            pass
 
     def cancel_goal(self) -> None:
-        """Cancel the current goal, if there is one, and wait for its end."""
-        if not self.where or self.has_ended.is_set():
-            return
-        self.client.cancel_goal()
-        if self.has_ended.wait(self.p.cancel_timeout):
-            self.client.wait_for_result()  # actionlib calls on_done before its own state changes
-        else:
+        """Cancel the earlier goal, if it runs, and wait for its end."""
+        if self.goal.is_up() and not self.goal.has_ended() and not self.goal.cancel(self.p.cancel_timeout):
             rospy.logwarn(
                 "the earlier goal did not end within %g s of its cancel; sending the new goal preempts it",
                 self.p.cancel_timeout,
             )
 
-    def on_feedback(self, feedback: GoToPositionFeedback) -> None:
-        """Store feedback; a callback."""
-        self.feedback = feedback
-
-    def on_done(self, state: int, result: Optional[GoToPositionResult]) -> None:
-        """Store how the goal ended; a callback."""
-        self.ending = ending(state, result)
-        rospy.loginfo("goal ended, %s", self.ending)
-        self.has_ended.set()
-
-    # -- status report --
+    # -- status --
 
     def report(self, _event: Optional[rospy.timer.TimerEvent] = None) -> None:
-        """Publish the state of the server, and of the last goal as this client knows it."""
-        log = rospy.loginfo
-        if not discovery.is_up(self.client):
-            text = discovery.absence(ACTION)
-            if self.waiting:
-                text += f"; goal {self.waiting} waits for it"
-            if time.monotonic() - self.last_seen > SERVER_TIMEOUT:
-                text, log = f"{text}; {discovery.advice()}", rospy.logwarn
-            return self.publish_status(text, log)
-        self.last_seen = time.monotonic()
+        """Publish the state of the server, and of the newest goal as this client knows it."""
+        if not self.goal.is_up():
+            return self.publish_status(f"waiting for {ACTION}; if it has ended, its terminal says why", rospy.logwarn)
         with self.sending:
-            if self.where and not self.has_ended.is_set():
-                return self.publish_status(self.progress(), log)
-        last = f"last goal {self.ending}" if self.where else "no goal yet"
-        self.publish_status(f"{ACTION} is ready, {last}", log)
+            text = self.state()
+        self.publish_status(text, rospy.loginfo)
 
-    def progress(self) -> str:
-        """The current goal's state and feedback in words."""
-        state, feedback = STATES[self.client.get_state()], self.feedback
-        if state not in UNFINISHED:
-            return f"goal {self.where} has ended ({state}), waiting for its result"
+    def state(self) -> str:
+        """The newest goal's state in words, with the newest feedback or how the goal ended."""
+        if not self.where:
+            return f"{ACTION} is ready, no goal yet"
+        if self.goal.has_ended():
+            return f"{ACTION} is ready, last goal {self.goal.state()}"
+        text, feedback = f"goal {self.where} is {self.goal.state()}", self.feedback
         if feedback is None:
-            return f"goal {self.where} is {state}"
+            return text
         errors = f"position_error {feedback.position_error:.2f} m, angle_error {feedback.angle_error:.2f} rad"
-        return f"goal {self.where} is {state}: {feedback.message} ({errors})"
+        return f"{text}: {feedback.message} ({errors})"
 
     def publish_status(self, text: str, log: Callable[..., None]) -> None:
         """Publish a status, and log it if it has changed."""
@@ -199,7 +139,6 @@ class Bridge:
 
 def main() -> None:
     """Run the node until it is shut down; exit status 1 when it can't start, with the reason logged."""
-    logging.getLogger("rosout").addFilter(lambda record: not record.getMessage().startswith(UNLOGGED))
     answer_help("The bridge: makes goals of robocop_goto_as from 2D Nav Goals of RViz (/move_base_simple/goal).")
     with node(BRIDGE):
         Bridge(load_params(BridgeParams)).run()

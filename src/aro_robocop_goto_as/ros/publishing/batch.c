@@ -1,7 +1,6 @@
 /* Fills the messages of one step with the simulation's numbers, and sends them to all their subscribers.
  *
- * The structures are mirrored in batch.py and packed.py; ARO_BATCH_VERSION changes with them. ROS's messages are
- * little-endian, as all processors are for which Debian builds ROS 1.
+ * ROS's messages are little-endian, as all processors are for which Debian builds ROS 1.
  */
 
 #include <errno.h>
@@ -11,7 +10,7 @@
 #include <sys/socket.h>
 #include <sys/types.h>
 
-#define ARO_BATCH_VERSION 7
+#define ARO_BATCH_VERSION 7 /* changes with each structure and function that Python uses */
 #define NANOSECONDS 1000000000
 
 /* What a field of a message is made of */

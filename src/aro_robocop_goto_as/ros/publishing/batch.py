@@ -10,41 +10,21 @@ import threading
 from typing import Any, Sequence, Set, Tuple
 
 from ... import compiled
-from ...compiled import members
+from ...compiled import structure
 from .packed import PackedMessage
 from .publisher import DirectPublisher
 from .rospy_internals import disconnect, latch_lock
 
-VERSION = 7  # of batch.c
+_FieldStruct, _ParcelStruct, _BatchStruct = (
+    structure("ros/publishing/batch.c", name) for name in ("field", "parcel", "batch")
+)
 
-Posted = Tuple[DirectPublisher, PackedMessage]
-
-
-class _FieldStruct(ctypes.Structure):
-    """`struct field` of batch.c."""
-
-    _fields_ = [*members(ctypes.c_int64, "kind count"), *members(ctypes.c_void_p, "to source")]
-
-
-class _ParcelStruct(ctypes.Structure):
-    """`struct parcel` of batch.c."""
-
-    _fields_ = [*members(ctypes.c_void_p, "data stands"), *members(ctypes.c_int64, "size socket taken")]
-
-
-class _BatchStruct(ctypes.Structure):
-    """`struct batch` of batch.c."""
-
-    _fields_ = [
-        *members(ctypes.c_int64, "n_fields n_parcels n_first"),
-        ("fields", ctypes.POINTER(_FieldStruct)),
-        ("parcels", ctypes.POINTER(_ParcelStruct)),
-    ]
+TopicMessage = Tuple[DirectPublisher, PackedMessage]
 
 
 @functools.lru_cache(maxsize=None)
 def _library() -> ctypes.PyDLL:
-    library = compiled.load("batch", VERSION)
+    library = compiled.load("batch", "ros/publishing/batch.c")
     library.aro_send.restype = ctypes.c_int64
     library.aro_send.argtypes = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64]
     return library
@@ -58,12 +38,12 @@ class Batch:
     """
 
     def __init__(
-        self, messages: Sequence[Posted], last: Sequence[Posted] = (), filled: Sequence[PackedMessage] = ()
+        self, messages: Sequence[TopicMessage], last: Sequence[TopicMessage] = (), filled: Sequence[PackedMessage] = ()
     ) -> None:
         """`last`: messages sent after all others, such as the clock; `filled`: messages filled but not sent."""
         sent = [*messages, *last]
         self._kept = sent, filled  # batch.c also fills messages without a subscriber
-        self._parcels = [(*posted, link) for posted in sent for link in posted[0].links]
+        self._parcels = [(topic, message, link) for topic, message in sent for link in topic.links]
         fields = [
             _FieldStruct(field.kind, field.size, message.address + field.offset, field.source_address)
             for message in (*(message for _, message in sent), *filled)
@@ -73,12 +53,14 @@ class Batch:
             _ParcelStruct(message.address, link.address, message.size, link.descriptor)
             for _, message, link in self._parcels
         ]
+        self._field_structs = (_FieldStruct * len(fields))(*fields)
+        self._parcel_structs = (_ParcelStruct * len(parcels))(*parcels)
         self._struct = _BatchStruct(
             len(fields),
             len(parcels),
             sum(len(topic.links) for topic, _ in messages),
-            (_FieldStruct * len(fields))(*fields),
-            (_ParcelStruct * len(parcels))(*parcels),
+            ctypes.addressof(self._field_structs),
+            ctypes.addressof(self._parcel_structs),
         )
         self._pointer, self._fill_and_send = ctypes.addressof(self._struct), _library().aro_send
         locks = [lock for lock in (latch_lock(topic) for topic, _ in sent) if lock is not None]
@@ -89,8 +71,8 @@ class Batch:
 
         `more`: the next messages follow at once, and the kernel may join them with these (MSG_MORE; 0.2 s at most).
 
-        A subscriber that takes nothing for publisher.STALL_TIMEOUT misses messages until it reads again. All
-        subscribers of a step share that time, because a stopped node can have many topics.
+        It waits for publisher.STALL_TIMEOUT at most, for all subscribers together: a stopped node can have many
+        topics. A subscriber that has taken nothing by then misses messages until it reads again.
         """
         with self._lock:
             if self._fill_and_send(self._pointer, stamp_ns, more):
@@ -100,7 +82,7 @@ class Batch:
         """Send the rest of messages that were sent in part; a subscriber that is gone is disconnected."""
         lost: Set[int] = set()  # ids of connections
         may_wait = True
-        for (topic, message, link), parcel in zip(self._parcels, self._struct.parcels[: self._struct.n_parcels]):
+        for (topic, message, link), parcel in zip(self._parcels, self._parcel_structs):
             if parcel.taken != message.size and id(link.connection) not in lost:
                 stood = link.stands_still
                 try:

@@ -22,7 +22,7 @@ _publishers: "weakref.WeakSet[DirectPublisher]" = weakref.WeakSet()
 class DirectPublisher(rospy.Publisher):
     """A synchronous publisher: no queue that drops messages, no thread per topic, back-pressure instead of loss."""
 
-    changes = 0  # how often the subscribers of any publisher have changed; counted in rospy's threads
+    revision = 0  # how often the subscribers of any publisher have changed; counted in rospy's threads
     _lock = threading.Lock()
 
     def __init__(self, topic: str, kind: Any, latch: bool) -> None:
@@ -41,7 +41,7 @@ class DirectPublisher(rospy.Publisher):
                 for connection, connected in connections_of(self)
             ]
             self.links = tuple(link for link in found if link is not None)
-            DirectPublisher.changes += 1
+            DirectPublisher.revision += 1
 
     def resume(self) -> None:
         """Send the latched message to subscribers that stood still, missed the message, and read again."""

@@ -24,7 +24,7 @@ TICK_TIMEOUT = 1.0  # [s, wall] for messages that a simulator in lockstep has al
 
 
 @dataclass(frozen=True)
-class Received:
+class ReceivedMessage:
     """A message with the ROS time [s] and the wall time [s] of its arrival, its stamp and the topic's period [ns]."""
 
     message: Any
@@ -35,11 +35,11 @@ class Received:
     clearance: Optional[float]  # [m] to the nearest obstacle ahead, of a scan that has a beam ahead
 
 
-def _received(message: Any, previous: Optional[Received], clearance: Optional[float] = None) -> Received:
+def _received(message: Any, previous: Optional[ReceivedMessage], clearance: Optional[float] = None) -> ReceivedMessage:
     stamp_ns, period_ns = message.header.stamp.to_nsec(), math.inf
     if previous is not None and stamp_ns > previous.stamp_ns:
         period_ns = stamp_ns - previous.stamp_ns
-    return Received(message, rospy.get_rostime().to_sec(), time.monotonic(), stamp_ns, period_ns, clearance)
+    return ReceivedMessage(message, rospy.get_rostime().to_sec(), time.monotonic(), stamp_ns, period_ns, clearance)
 
 
 class Inputs:
@@ -47,9 +47,9 @@ class Inputs:
 
     def __init__(self, tuning: Tuning) -> None:
         self._tuning = tuning
-        self.odom: Optional[Received] = None
-        self.scan: Optional[Received] = None
-        self.valid_scan: Optional[Received] = None  # the newest, except those whose beams ahead are all NaN
+        self.odom: Optional[ReceivedMessage] = None
+        self.scan: Optional[ReceivedMessage] = None
+        self.valid_scan: Optional[ReceivedMessage] = None  # the newest, except those whose beams ahead are all NaN
         self._arrived = threading.Condition()
 
     def on_odom(self, message: Odometry) -> None:
@@ -98,15 +98,15 @@ class Inputs:
                 return outcome, self._absence(name, valid, now)
         return None
 
-    def _absence(self, name: str, valid: Optional[Received], now: float) -> str:
+    def _absence(self, name: str, valid: Optional[ReceivedMessage], now: float) -> str:
         # Compared with the present time: scans may have arrived since the control period began.
         what = "valid beam ahead" if name == "scan" and self._is_recent(self.scan) else "message"
         since = "so far" if valid is None else f"for {now - valid.at:.1f} s"
         return f"no {what} on {rospy.resolve_name(name)} {since} (limit {self._tuning.params.data_timeout:g} s)"
 
-    def _is_recent(self, received: Optional[Received]) -> bool:
+    def _is_recent(self, message: Optional[ReceivedMessage]) -> bool:
         now, limit = rospy.get_rostime().to_sec(), self._tuning.params.data_timeout
-        return received is not None and now - received.at <= limit
+        return message is not None and now - message.at <= limit
 
     def read(self) -> Optional[Tuple[Pose2D, float]]:
         """Pose in odom and clearance ahead [m]; None without recent messages.

@@ -28,7 +28,6 @@ from .ticks import Ticks
 from .tuning import Tuning
 
 SHUTDOWN_TIMEOUT = 5.0  # [s, wall] for a running goal to stop the robot and report SHUTDOWN
-MAX_STAMP_LEAD = 10.0  # [s] that a stamp may be later than now: clocks of machines differ, and simulated time may race
 SEND_TIME = 0.1  # [s, wall] for rospy to send what was just published
 
 
@@ -68,7 +67,6 @@ class GotoNode:
 
     def go_to(self, goal: GoToPositionGoal) -> None:
         """The handout's loop: one control period after another, until the goal gets its one terminal state."""
-        self.warn_if_stamped_in_future(self.server.current_goal.get_goal_id().stamp)
         execution = GoalExecution(goal, self.inputs)
         ending = execution.refusal()
         try:
@@ -77,7 +75,7 @@ class GotoNode:
                 rospy.loginfo("goal accepted: %s", execution.where())
             while ending is None:
                 # The next tick, or the tick not yet answered when this goal came.
-                tick = self.ticks.wait_for_next(self.ticks.answered, self.is_interrupted)
+                tick_ns = self.ticks.wait_for_next(self.ticks.answered_ns, self.is_interrupted)
                 if self.stop_reason:
                     ending = execution.stopped_early(Outcome.SHUTDOWN, self.stop_reason)
                 elif self.server.is_preempt_requested():
@@ -85,9 +83,9 @@ class GotoNode:
                     reason = "a newer goal replaced it" if replaced else "it was cancelled"
                     ending = execution.stopped_early(Outcome.PREEMPTED, reason)
                 else:
-                    ending = self.control_period(execution, tick)
+                    ending = self.control_period(execution, tick_ns)
                     if ending is None:
-                        self.ticks.answer(tick)
+                        self.ticks.answer(tick_ns)
         except RobocopError as error:  # odometry or a scan can't be used
             ending = Ending(Outcome.ERROR, str(error))
         except Exception as error:  # a fault of this program: also then the goal ends below, once
@@ -96,18 +94,7 @@ class GotoNode:
         finally:
             self.drive(STANDSTILL)
         self.set_terminal_state(execution, ending)
-        self.ticks.answer(self.ticks.newest())
-
-    def warn_if_stamped_in_future(self, stamp: rospy.Time) -> None:
-        """Warn of a goal's stamp that is later than now: actionlib's server drops all goals with an earlier stamp."""
-        if stamp.to_sec() > rospy.get_time() + MAX_STAMP_LEAD:
-            rospy.logwarn(
-                "the goal is stamped %.1f s, but the time is %.1f s: after this goal, every goal with an earlier stamp "
-                "ends as RECALLED. Start the server again, and stamp goals by rospy.Time.now() with /use_sim_time set, "
-                "or by 0",
-                stamp.to_sec(),
-                rospy.get_time(),
-            )
+        self.ticks.answer(self.ticks.newest_ns())
 
     def is_interrupted(self) -> bool:
         """Return whether the goal has to end before its next control period."""
@@ -166,12 +153,12 @@ class GotoNode:
 
     def answer_idle_ticks(self) -> None:
         """Answer the ticks at which no goal runs or is about to run; a thread of its own."""
-        tick = self.ticks.answered
+        tick_ns = self.ticks.answered_ns
         while not self.stop_reason:
-            tick = self.ticks.wait_for_next(tick, lambda: bool(self.stop_reason))
+            tick_ns = self.ticks.wait_for_next(tick_ns, lambda: bool(self.stop_reason))
             with self.execution_lock:
                 if not (self.stop_reason or self.server.is_new_goal_available() or self.server.is_active()):
-                    self.ticks.answer(self.ticks.newest())
+                    self.ticks.answer(self.ticks.newest_ns())
 
     # -- the node --
 

@@ -1,12 +1,10 @@
-"""The ticks of the control loop: whole multiples of its period in ROS time, at 10 Hz for instance 0.1 s, 0.2 s, ..."""
+"""The ticks of the control loop, each known by its ROS time [ns]: a whole multiple of the loop's period."""
 
-import contextlib
 import math
 import threading
 from fractions import Fraction
 from typing import Callable, Optional, Sequence
 
-import rosgraph
 import rospy
 from rosgraph_msgs.msg import Clock
 
@@ -14,7 +12,6 @@ from aro_robocop_goto_as.msg import TickAnswer
 
 from ...geometry import NANOSECONDS, STANDSTILL, Twist2D
 from .. import convert
-from ..graph import published_topics
 from ..publishing.publisher import publisher
 
 
@@ -38,62 +35,53 @@ class Ticks:
         self._clock = rospy.Time()
         self._is_simulated = rospy.get_param("/use_sim_time", False)
         self.answers = publisher("tick_answer", TickAnswer)  # sends at once: simulated time stands meanwhile
-        self.answered = self.newest()  # the newest tick [ns] that is done
-        if self._is_simulated:  # rospy sets its time before it calls this, as its own subscriber was there first
+        self.answered_ns = self.newest_ns()  # the newest tick [ns] that is done
+        if self._is_simulated:  # rospy subscribed to /clock before, so its time is already new in this callback
             rospy.Subscriber("/clock", Clock, self._on_clock, queue_size=1, tcp_nodelay=True)
 
     def _on_clock(self, message: Clock) -> None:
         before, self._clock = self._clock, message.clock
         if message.clock < before:
-            self._warn_of_two_clocks()
             self._on_set_back(
                 f"simulated time was set back from {before.to_sec():.1f} to {message.clock.to_sec():.1f} s"
             )
         topics = (self.answers, *self._inputs)
         if not self._has_joined and all(topic.get_num_connections() for topic in topics):
             self._has_joined = True
-            self._publish(self.answered, None)
+            self._publish(self.answered_ns, None)
         self.wake()
-
-    def _warn_of_two_clocks(self) -> None:
-        """Warn once if two nodes publish /clock: time jumps between their times."""
-        with contextlib.suppress(OSError, rosgraph.MasterException):
-            nodes = [node for topic in published_topics() if topic.name == "/clock" for node in topic.publishers]
-            if len(nodes) > 1:
-                text = "%s publish /clock, so time jumps: end all but one (rosbag play: /clock:=/bag_clock, no --clock)"
-                rospy.logwarn_once(text, " and ".join(sorted(nodes)))
 
     def wake(self) -> None:
         """Wake the thread that waits, so that it looks for an interruption."""
         with self._changed:
             self._changed.notify_all()
 
-    def newest(self) -> int:
+    def newest_ns(self) -> int:
         """The time of the newest tick [ns]."""
-        return self._tick(rospy.get_rostime().to_nsec())
+        return self._tick_ns(rospy.get_rostime().to_nsec())
 
-    def _tick(self, time_ns: int, later: int = 0) -> int:
-        """The time of the newest tick at a time [ns], or of a `later` tick; rounded down as the simulator does."""
+    def _tick_ns(self, time_ns: int, later: int = 0) -> int:
+        """The newest tick [ns] at a time [ns], or the one `later` ticks after it; rounded down as in the simulator."""
         number = math.ceil((time_ns + 1) / self._period_ns) - 1 + later
         return math.floor(number * self._period_ns)
 
     def wait_for_next(self, last_ns: int, is_interrupted: Callable[[], bool]) -> int:
         """Wait until there is a later tick than the last one, or for an interruption; the newest tick [ns]."""
         with self._changed:
-            while self.newest() <= last_ns and not is_interrupted():
+            while self.newest_ns() <= last_ns and not is_interrupted():
                 if self._is_simulated:
                     self._changed.wait()
                     continue
-                if self.newest() < last_ns:  # the wall clock was set back
-                    last_ns = self.answered = self.newest()
-                remaining = self._tick(last_ns, later=1) - rospy.get_rostime().to_nsec()
+                if self.newest_ns() < last_ns:  # the wall clock was set back
+                    last_ns = self.answered_ns = self.newest_ns()
+                remaining = self._tick_ns(last_ns, later=1) - rospy.get_rostime().to_nsec()
                 self._changed.wait(max(0, remaining) / NANOSECONDS)
-        return self.newest()
+        return self.newest_ns()
 
     def answer(self, tick_ns: int) -> None:
         """Tell a simulator in lockstep that this tick is done, with the command since the last answer, if any."""
-        if tick_ns > self.answered:
-            self.answered = tick_ns
+        if tick_ns > self.answered_ns:
+            self.answered_ns = tick_ns
             command, self.command = self.command, None
             if self._has_joined:
                 self._publish(tick_ns, command)

@@ -122,10 +122,10 @@ class GazeboServices:
 
     def _spawn(self, request: Any) -> Fields:
         pose = self._call(lambda: self._in_world(request.initial_pose, request.reference_frame))
-        changes = self._require_services()
+        services = self._require_services()
         if request.model_name in self._names:
             raise WorldError(f"model name [{request.model_name}] is already used by a robot")
-        return {"status_message": "SpawnModel: " + changes.spawn(request.model_name, request.model_xml, "", pose)}
+        return {"status_message": "SpawnModel: " + services.spawn(request.model_name, request.model_xml, "", pose)}
 
     def _delete(self, request: Any) -> Fields:
         if request.model_name in self._names:

@@ -112,7 +112,7 @@ def relative(moving: State, frame: State) -> Tuple[Pose, Twist]:
 
 
 def models(simulator: Simulator) -> List[State]:
-    """The models in Gazebo's order: the world's, which stand still here, the robots, and models spawned since."""
+    """The models in Gazebo's order: the world's, the robots, models spawned since; all but robots stand still here."""
     robots = [
         (name, raised(lifted(state.world_from_footprint), simulator.world.ground), _world_twist(state))
         for name, _, state in _robots(simulator)

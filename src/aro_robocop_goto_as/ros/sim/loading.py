@@ -7,8 +7,8 @@ import rospkg
 import rospy
 
 from ...errors import PlaceError, WorldError
+from ...floor_plan.free_places import occupant
 from ...names import PACKAGE
-from ...raycast.free_places import occupant
 from ...robot.catalog import load_model
 from ...simulation.factory import make_simulator, robots_from
 from ...simulation.params import SimParams

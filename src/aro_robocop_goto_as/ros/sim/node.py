@@ -7,7 +7,7 @@ import rospy
 
 from ...errors import ParameterError
 from ...names import SIMULATOR
-from ...simulation.agenda import Due
+from ...simulation.agenda import StepEvents
 from ...simulation.params import SimParams, TopicParams
 from ...simulation.running import RunningSimulator
 from ...simulation.simulator import Change, Simulator
@@ -58,12 +58,12 @@ class SimNode:
             self._publish_changes(now.changes)
             if now.clock:
                 self._topics.publish_clock()
-            if now.tick is not None:
-                self._status.warn_of(now.tick)
-            if self._status.report():
+            if now.outcome is not None:
+                self._status.warn_of(now.outcome)
+            if self._status.publish_due():
                 resume()
 
-    def _publish(self, due: Due, more: bool) -> None:
+    def _publish(self, due: StepEvents, more: bool) -> None:
         """Publish what is due on this step, and warn of robots that were placed in contact with something."""
         if due.control and self._simulator.moving:
             self._world.publish_moving()

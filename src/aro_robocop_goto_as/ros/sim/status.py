@@ -10,53 +10,52 @@ from aro_robocop_goto_as.msg import SimStatus
 
 from ...geometry import Pose2D, compose
 from ...names import SIMULATOR, absolute, robocop
-from ...simulation.lockstep import ControllerId, TickReport
+from ...simulation.lockstep import ControllerId, TickOutcome
 from ...simulation.running import RunningSimulator
 from ...simulation.simulator import Simulator
-from ...simulation.time_control import FactorReport
+from ...simulation.time_control import Pace
 from .. import convert
 from ..publishing.publisher import publisher
 
 
 class StatusTopics:
-    """One report per second of wall time, and one whenever the set of controllers changes."""
+    """Published once per second of wall time, and whenever the set of controllers changes."""
 
     def __init__(self, running: RunningSimulator) -> None:
         self._running = running
-        self._report = FactorReport(0.0, running.time_control.pacer.factor, 0.0, 0.0)
+        self._pace = Pace(0.0, running.time_control.pacer.factor, 0.0, 0.0)
         self._has_warned_of_lag = False
         self._drivers: List[ControllerId] = []
         self._slipped: Set[int] = set()  # robots
         self._factor = publisher("~real_time_factor", Float64, latch=True)
         self._status = publisher("~status", SimStatus, latch=True)
 
-    def report(self) -> bool:
+    def publish_due(self) -> bool:
         """Publish what is due; cheap when nothing is. Returns whether a second has passed."""
         simulator = self._running.simulator
-        report = self._running.time_control.pacer.report(simulator.steps)
-        if report is not None:
-            self._report = report
-            self._factor.publish(report.reached)
+        pace = self._running.time_control.pacer.measure_pace(simulator.steps)
+        if pace is not None:
+            self._pace = pace
+            self._factor.publish(pace.reached)
             self._watch_slip()
             self.publish()
-            self._warn_of_lag(report)
+            self._warn_of_lag(pace)
         elif self._running.controllers.lockstep.expected() != self._drivers:
             self.publish()
-        return report is not None
+        return pace is not None
 
-    def _warn_of_lag(self, report: FactorReport) -> None:
+    def _warn_of_lag(self, pace: Pace) -> None:
         """Warn the first time that the machine is too slow; ~status and ~real_time_factor have what follows."""
-        if self._has_warned_of_lag or self._running.time_control.paused or not report.behind:
+        if self._has_warned_of_lag or self._running.time_control.paused or not pace.behind:
             return
         self._has_warned_of_lag = True
         text = "real-time factor %.2f achieved, %.2f requested: this machine is too slow; simulated time runs slower"
-        rospy.logwarn(text, report.reached, report.asked)
+        rospy.logwarn(text, pace.reached, pace.asked)
 
     def _watch_slip(self) -> None:
         """Note robots whose wheels turned at an obstacle until odometry was off by their radius, and warn once of each.
 
-        Where map -> odom follows the truth or is left to a localization, odometry's error does not stay. Where errors
-        of odometry are set, it may come from them.
+        Only where map -> odom is static, as nothing corrects odometry then, and no errors of odometry are set.
         """
         simulator = self._running.simulator
         odometry = simulator.params.sensors.odometry
@@ -78,11 +77,11 @@ class StatusTopics:
                     absolute(SIMULATOR, "reset"),
                 )
 
-    def warn_of(self, tick: TickReport) -> None:
+    def warn_of(self, outcome: TickOutcome) -> None:
         """Log what went wrong in a control tick in lockstep."""
-        for controller in tick.gone:
+        for controller in outcome.gone:
             rospy.logwarn("lockstep: %s disconnected; the robot is stopped", self._name(controller))
-        for controller in tick.late:
+        for controller in outcome.late:
             text = "lockstep: no answer from %s within %g s; it is waited for again once it answers at each tick"
             rospy.logwarn(text, self._name(controller), self._running.controllers.lockstep.timeout)
 
@@ -92,8 +91,8 @@ class StatusTopics:
         return f"{controller.node} driving {robots[controller.robot].name}" if len(robots) > 1 else controller.node
 
     def publish(self) -> None:
-        """Publish the newest report now."""
-        running, simulator, report = self._running, self._running.simulator, self._report
+        """Publish ~status now."""
+        running, simulator, pace = self._running, self._running.simulator, self._pace
         self._drivers = running.controllers.lockstep.expected()
         status = SimStatus(
             stamp=convert.to_time(simulator.stamp_ns),
@@ -105,9 +104,9 @@ class StatusTopics:
             sync="lockstep" if running.controllers.in_lockstep else "free",
             paused=running.time_control.paused,
             factor_asked=running.time_control.pacer.factor,
-            factor_reached=report.reached,
-            step_time=report.step_time,
-            behind=report.lag,
+            factor_reached=pace.reached,
+            step_time=pace.step_time,
+            behind=pace.lag,
             drivers=sorted(map(self._name, self._drivers)),
             lockstep_misses=running.controllers.lockstep.misses,
         )

@@ -15,16 +15,16 @@ from ...geometry import Pose2D
 from ...names import MAP_FRAME, WORLD_FRAME
 from ...robot.model import BASE
 from ...sensors.odometry import ODOM
-from ...simulation.agenda import Due, Subscriptions
+from ...simulation.agenda import StepEvents, Subscriptions
 from ...simulation.simulator import Simulator
 from .. import convert
-from ..publishing.batch import Batch, Posted
+from ..publishing.batch import Batch, TopicMessage
 from ..publishing.packed import PackedMessage
 from ..publishing.publisher import DirectPublisher, publisher
 from ..publishing.rospy_internals import set_latched
 from .sensor_messages import RobotFrames, Row, packed_transforms, topics_of
 
-Made = Tuple[DirectPublisher, Callable[[genpy.Time], Any]]  # a topic, and the function that makes its message
+MessageMaker = Tuple[DirectPublisher, Callable[[genpy.Time], Any]]  # a topic, and the function that makes its message
 
 
 def packed_clock() -> PackedMessage:
@@ -52,9 +52,9 @@ class StepTopics:
         self.clock = publisher("/clock", Clock, latch=True)
         self._clock_message = packed_clock()
         set_latched(self.clock, self._clock_message)
-        self._changes = -1  # of the publishers, when these were made:
+        self._revision = -1  # of the publishers, when these were made:
         self._subscriptions: Subscriptions = {}
-        self._prepared: Dict[Due, Tuple[Sequence[Made], Batch]] = {}
+        self._prepared: Dict[StepEvents, Tuple[Sequence[MessageMaker], Batch]] = {}
         self._clock_alone = Batch([])
 
     def subscriptions(self) -> Subscriptions:
@@ -64,8 +64,8 @@ class StepTopics:
 
     def _follow_subscribers(self) -> None:
         """Make the batches anew if a subscriber has come or gone."""
-        if self._changes != DirectPublisher.changes:
-            self._changes = DirectPublisher.changes  # before the look at the connections: one may change during it
+        if self._revision != DirectPublisher.revision:
+            self._revision = DirectPublisher.revision  # before the look at the connections: one may change during it
             self._prepared = {}
             self._clock_alone = Batch([(self.clock, self._clock_message)])
             subscriptions: Dict[str, List[int]] = {}
@@ -76,7 +76,7 @@ class StepTopics:
                         subscriptions.setdefault(sensor, []).append(row)
             self._subscriptions = subscriptions
 
-    def publish(self, due: Due, more: bool = False) -> None:
+    def publish(self, due: StepEvents, more: bool = False) -> None:
         """All measurements of one step; then the clock if it is due, so that a tick's data is there when it ticks.
 
         `more`: the next step's messages follow at once.
@@ -113,7 +113,7 @@ class StepTopics:
         self._follow_subscribers()
         self._clock_alone.send(self._simulator.stamp_ns)
 
-    def messages_due(self, due: Due) -> Iterator[Tuple[DirectPublisher, Any]]:
+    def messages_due(self, due: StepEvents) -> Iterator[Tuple[DirectPublisher, Any]]:
         """The topics of what is due, with their messages; /tf last, with all robots' transforms in one message."""
         for sensor, of_robots in self.topics.items():
             for row in due.of(sensor):
@@ -129,9 +129,9 @@ class StepTopics:
         followed = (robot.map, robot.odom, odometry.map_from_odom[robot.row])
         return [base] * topics.odom_tf + [followed] * (topics.localization == "truth")
 
-    def _prepare(self, due: Due) -> Tuple[Sequence[Made], Batch]:
+    def _prepare(self, due: StepEvents) -> Tuple[Sequence[MessageMaker], Batch]:
         """The functions that make messages, and the batch of all packed messages, of topics with subscribers."""
         topics = [(topic, message) for topic, message in self.messages_due(due) if topic.get_num_connections()]
-        packed: List[Posted] = [posted for posted in topics if isinstance(posted[1], PackedMessage)]
-        made = [posted for posted in topics if not isinstance(posted[1], PackedMessage)]
+        packed: List[TopicMessage] = [it for it in topics if isinstance(it[1], PackedMessage)]
+        made = [it for it in topics if not isinstance(it[1], PackedMessage)]
         return made, Batch(packed, [(self.clock, self._clock_message)] if due.clock else [])

@@ -34,7 +34,7 @@ def to_grid(occupancy: Occupancy, stamp: Time, frame: str) -> OccupancyGrid:
     return Grid(Header(0, stamp, frame), grid.info, grid.data)
 
 
-class _Whole(MarkerArray):
+class _WorldMarkers(MarkerArray):
     """A message with the whole world as it is when the message is sent, also to a subscriber that comes later."""
 
     def __init__(self, markers: Callable[[], List[Marker]]) -> None:
@@ -68,7 +68,7 @@ class WorldTopics:
         """Publish the whole world, which replaces the markers that were published before."""
         if self._has_map:
             self._publish_map()
-        self._markers.publish(_Whole(lambda: [CLEAR, *self._obstacles(), *robot_markers(self._robots)]))
+        self._markers.publish(_WorldMarkers(lambda: [CLEAR, *self._obstacles(), *robot_markers(self._robots)]))
 
     def publish_moving(self) -> None:
         """The moving obstacles where they are now."""

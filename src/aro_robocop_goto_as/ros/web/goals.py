@@ -20,7 +20,7 @@ from ...web import text
 from ...web.page import floor_point
 from ...web.state import PageState
 from .. import convert, markers
-from ..client.goal_states import STATES, UNFINISHED, result_text
+from ..client.follower import STATES, UNFINISHED
 from ..connected_nodes import publishers_of
 from ..marker_shapes import MarkerStore
 from .part import Context, Inbox, Part
@@ -41,10 +41,10 @@ class GoalsPart(Part):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        gui, live = context.server.gui, context.state.now.live
+        gui, can_send = context.server.gui, context.state.now.can_send
         self._goal_html = gui.add_html("")
-        self._mode = gui.add_dropdown("Tap or click", (SEND_GOAL, PLACE_ROBOT), visible=live, hint="on the floor")
-        self._cancel = gui.add_button("Cancel goal", icon="x", visible=live)
+        self._mode = gui.add_dropdown("Tap or click", (SEND_GOAL, PLACE_ROBOT), visible=can_send, hint="on the floor")
+        self._cancel = gui.add_button("Cancel goal", icon="x", visible=can_send)
         self._cancel.on_click(lambda _: cancel(context.requests))
         self._robot = ""  # the robot to which the fields of _forget belong
         self._status: Optional[rospy.Subscriber] = None  # of its server
@@ -63,7 +63,7 @@ class GoalsPart(Part):
     def _on_click(self, event: Any) -> None:
         point = floor_point(event.ray_origin, event.ray_direction)
         state, requests = self.context.state.now, self.context.requests
-        if point is None or not state.live:
+        if point is None or not state.can_send:
             return
         place, pose = self._mode.value == PLACE_ROBOT, PoseStamped()
         where = f"{'pose' if place else 'goal'} {text.position(*point)}"
@@ -102,7 +102,7 @@ class GoalsPart(Part):
 
     def _on_result(self, _: float, message: GoToPositionActionResult) -> None:
         self._feedback, self._newest = None, message.status
-        self._ending = result_text(message.status.status, message.result.message)
+        self._ending = message.result.message or message.status.text
 
     def show(self, state: PageState) -> None:
         if state.resets != self._resets and self._newest is not None and not self._executing:

@@ -54,15 +54,15 @@ def load_params(arguments: Sequence[str]) -> WebParams:
 
 def add_parts(context: Context, p: WebParams) -> List[Part]:
     """Add what the panel shows below the status: goals, tabs, the buttons that drive."""
-    live = context.state.now.live
+    can_send = context.state.now.can_send
     parts: List[Part] = [ReplayPart(context, p.replay_waits)] if p.replay else []
     parts.append(GoalsPart(context))
     tabs = context.server.gui.add_tab_group()
-    with tabs.add_tab("Control" if live else "View"):
+    with tabs.add_tab("Control" if can_send else "View"):
         parts += [TimePart(context), ViewPart(context)]
         sector = {words: color_of((c.r, c.g, c.b, c.a))[0] for words, c in SECTOR.items()}
         context.server.gui.add_html(text.legend("sector ahead", sector))
-        if live and LAB.is_file():
+        if can_send and LAB.is_file():
             context.server.gui.add_html(text.link("/lab.md", "The lab, step by step"))
     with tabs.add_tab("Plots"):
         parts += plots(context)
@@ -78,7 +78,7 @@ class WebNode:
 
     def __init__(self, server: Any, p: WebParams) -> None:
         self._server = server
-        self._state = SharedState(PageState(live=not p.replay and not p.view_only, recorded=bool(p.replay)))
+        self._state = SharedState(PageState(can_send=not p.replay and not p.view_only, recorded=bool(p.replay)))
         scene, requests = PageScene(server.scene), Requests(self._state)
         context = Context(server, scene, self._state, requests, Frames(), p.web_frame)
         set_up(server)

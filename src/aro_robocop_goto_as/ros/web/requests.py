@@ -56,5 +56,5 @@ class Requests:
                 problem = str(error)
             self._state.change(answer=f"{what}: {problem}" if problem else "")
 
-        if self._state.now.live:
+        if self._state.now.can_send:
             self._worker.submit(carry_out)

@@ -12,7 +12,7 @@ from tf2_msgs.msg import TFMessage
 
 from ...errors import RobotModelError
 from ...names import absolute
-from ...web.scene import Group, Shape
+from ...web.scene import Group, Visual
 from ...web.state import PageState
 from ...web.urdf import read_links
 from ..graph import Topic, published_topics
@@ -28,7 +28,7 @@ class RobotsPart(Part):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self._links: Dict[str, Dict[str, Shape]] = {}  # by robot and name
+        self._links: Dict[str, Dict[str, Visual]] = {}  # by robot and name
         self._moved: Set[str] = set()  # frames with a transform on tf
 
     def subscribe(self, inbox: Inbox) -> None:
@@ -74,7 +74,7 @@ class RobotsPart(Part):
         found = {robot: self._links[robot] if robot in self._links else self._load(robot) for robot in robots}
         self._links = {robot: links for robot, links in found.items() if links is not None}
 
-    def _load(self, robot: str) -> Optional[Dict[str, Shape]]:
+    def _load(self, robot: str) -> Optional[Dict[str, Visual]]:
         """A robot's links by name, from its own description or one that all share; None as long as there is none."""
         try:
             name = rospy.search_param(absolute(robot, DESCRIPTION)) or f"/{DESCRIPTION}"

@@ -11,14 +11,14 @@ from visualization_msgs.msg import MarkerArray
 from ...geometry import Pose3D, compose3, rotation_matrix
 from ...names import SERVER, SIMULATOR, absolute
 from ...web.page import BrowserCameras
-from ...web.scene import IMAGE, POINTS, Shape
+from ...web.scene import IMAGE, POINTS, Visual
 from ...web.state import PageState
 from ..marker_shapes import MarkerStore, to_pose
 from .part import Context, Inbox, Part
 
 DRAWN_BY_MODEL = ("robots", "noses")  # the simulator's markers for robots; the page draws their models instead
 DRAWN_BY_PAGE = ("trail",)  # markers of the server that the page draws itself, for any server
-SCAN = Shape(POINTS, (0.025, 0.025, 0.025), (255, 85, 70))
+SCAN = Visual(POINTS, (0.025, 0.025, 0.025), (255, 85, 70))
 PATIENCE = 1.0  # [s] between the stamps of a scan that waits for its transform and of one that takes its place
 MAP_HEIGHT = 0.003  # [m] above the grid, below goal and trail
 MAX_MAP_CELLS = 2000  # cells along a side; larger maps are thinned out
@@ -84,7 +84,7 @@ class SceneryPart(Part):
         if origin is not None and info.width and len(message.data) == info.width * info.height:
             width, height = info.width * info.resolution, info.height * info.resolution
             half = Pose3D((width / 2.0, height / 2.0, MAP_HEIGHT))
-            image = Shape(IMAGE, (width, height, 0.0), image=map_image(message.data, info.width, info.height))
+            image = Visual(IMAGE, (width, height, 0.0), image=map_image(message.data, info.width, info.height))
             self.context.scene.show("map", {object(): (image, compose3(compose3(fixed_from_map, origin), half))})
 
 

@@ -28,7 +28,7 @@ def start_server(p: WebParams) -> Any:
         raise WebError(f"{error}; run {robocop()} web, which installs what the page needs") from error
     access.require_free(p.web_host, p.web_port)
     with _checked_requests(p), contextlib.redirect_stdout(io.StringIO()):  # its table of addresses
-        server = viser.ViserServer(host=p.web_host, port=p.web_port, verbose=False)  # unnamed: it says "Connecting"
+        server = viser.ViserServer(host=p.web_host, port=p.web_port, verbose=False)  # no label: "Connecting"
     if server.get_port() != p.web_port:  # viser goes on to the next port that is free
         server.stop()
         raise WebError(f"port {p.web_port} has just been taken by another program; choose another one with web_port:=N")

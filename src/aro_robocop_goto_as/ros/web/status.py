@@ -9,9 +9,9 @@ from std_msgs.msg import String
 from aro_robocop_goto_as.msg import SimStatus
 
 from ...names import ACTION, BRIDGE, SIMULATOR, absolute
-from ...probes import master
 from ...web import text
 from ...web.state import PageState
+from .. import graph
 from ..connected_nodes import publishers_of
 from .part import Context, Inbox, Part
 
@@ -54,8 +54,8 @@ class StatusPart(Part):
         self._bridge = message.data
 
     def ask_master(self, state: PageState) -> None:
-        asked = state.live and self._sim is None and self.context.server.get_clients()  # a visitor may have to wait
-        self._no_simulator = master.no_simulator(master.master_uri()) if asked else ""
+        asked = state.can_send and self._sim is None and self.context.server.get_clients()  # a visitor may have to wait
+        self._no_simulator = graph.no_simulator() if asked else ""
 
     def show(self, state: PageState) -> None:
         """Show all of it; a recording's simulator may be silent for as long as it is paused."""
@@ -65,7 +65,7 @@ class StatusPart(Part):
         gone = f"No report from the simulator for {silence:.0f} s: has it ended?"
         problem = gone if silence > SILENCE_TIMEOUT else self._no_simulator or self._slip()
         self._alert.content = text.alert(problem)
-        known = state.live or self._sim is not None or self._bridge  # the recording of a grading has neither
+        known = state.can_send or self._sim is not None or self._bridge  # the recording of a grading has neither
         self._overview.content = text.table(self._rows(state)) if known else ""
         self._answer.content = text.answer(state.answer)
         if self._robot.options != state.robots:

@@ -68,7 +68,7 @@ class TeleopPart(Part):
         self._dead_man = DeadMan()
         self._wake = threading.Condition()
         gui = context.server.gui
-        with gui.add_folder("Drive", visible=context.state.now.live):
+        with gui.add_folder("Drive", visible=context.state.now.can_send):
             gui.add_html(STYLE.replace("KEYS", KEYS))
             for label, key, share in PAD:
                 if share is None:
@@ -100,7 +100,7 @@ class TeleopPart(Part):
     def drive(self, page: int, twist: Twist2D) -> None:
         """Drive the selected robot; a goal is cancelled, or the server would go on commanding the robot as well."""
         state = self.context.state.now
-        if not state.live:
+        if not state.can_send:
             return
         with self._wake:
             begins = self._dead_man.request(page, state.selected, twist, time.monotonic())

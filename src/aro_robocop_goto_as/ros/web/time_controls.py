@@ -41,6 +41,6 @@ class TimePart(Part):
         self._factor.on_update(on_update)
 
     def show(self, state: PageState) -> None:
-        self._folder.visible = state.live and state.simulated
+        self._folder.visible = state.can_send and state.simulated
         if state.factor_asked > 0.0 and time.monotonic() - self._moved_at > SETTLED:
             self._factor.value = min(max(state.factor_asked, self._factor.min), self._factor.max)

@@ -9,14 +9,14 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image
 
 from ...names import absolute
-from ...web.scene import LINE, Group, Shape
+from ...web.scene import LINE, Group, Visual
 from ...web.state import PageState
 from ..trail import Trail
 from .part import Context, Inbox, Part
 
 CAMERA = "camera/rgb/image_raw"
 IMAGE_PERIOD = 0.25  # [s, wall] between two images
-TRAIL_LINE = Shape(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
+TRAIL_LINE = Visual(LINE, (0.012, 0.0, 0.0), (90, 200, 250))
 
 
 class ViewPart(Part):
@@ -25,7 +25,7 @@ class ViewPart(Part):
     def __init__(self, context: Context) -> None:
         super().__init__(context)
         gui, state = context.server.gui, context.state.now
-        self._with_trail = gui.add_checkbox("Trail", state.live or state.recorded)
+        self._with_trail = gui.add_checkbox("Trail", state.can_send or state.recorded)
         self._image = gui.add_image(np.zeros((3, 4, 3), np.uint8), label="camera", visible=False)
         self._message: Optional[Image] = None  # that is not shown yet
         self._image_at = 0.0  # [s, wall]

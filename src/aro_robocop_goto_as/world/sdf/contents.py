@@ -1,4 +1,4 @@
-"""The contents of an SDF file read so far: obstacles, models, and reports of elements that are left out or differ."""
+"""The contents of an SDF file read so far: obstacles, models, and notes on elements that are left out or differ."""
 
 import os
 import re
@@ -89,7 +89,7 @@ class Contents:
                 "https://github.com/osrf/gazebo_models"
             )
 
-    def report(self, what: str, element: Element, is_different: bool = False) -> None:
+    def note(self, what: str, element: Element, is_different: bool = False) -> None:
         """Add an element to the world's `ignored`, or to its `approximated`, with its line and an included file."""
         (self.approximated if is_different else self.ignored).append(f"{what} ({self._place(element)})")
 
@@ -98,7 +98,7 @@ class Contents:
         if isinstance(reason, xml.MissingModelError):
             self.missing.setdefault(reason.name, self._place(element))
         else:
-            self.report(f"{what} is left out: {reason}", element, is_different=True)
+            self.note(f"{what} is left out: {reason}", element, is_different=True)
 
     def _place(self, element: Element) -> str:
         file = file_of(element)
@@ -107,12 +107,12 @@ class Contents:
     def check_children(self, element: Element, *read: str) -> None:
         """Report plugins, and children that are neither read nor known to be unused."""
         for child in xml.unknown_children(element, (*read, *_UNUSED[element.tag].split())):
-            self.report(f"{xml.title_of(child)} in <{element.tag}> is left out", child, is_different=True)
+            self.note(f"{xml.title_of(child)} in <{element.tag}> is left out", child, is_different=True)
         for plugin in element.iterchildren("plugin"):
             is_ours = element.tag == "model" and is_motion(plugin)
             is_simulator = element.tag == "world" and _OF_SIMULATOR.match(str(plugin.get("filename", "")))
             if not (is_ours or is_simulator):
-                self.report(f"plugin '{plugin.get('name', '')}'", plugin)
+                self.note(f"plugin '{plugin.get('name', '')}'", plugin)
 
     def may_be_robot(self, parent: Parent, static: Optional[bool]) -> bool:
         """Return whether a model of this parent is left out if it looks like a robot."""
@@ -123,7 +123,7 @@ class Contents:
         is_start = self.spawn is None and self.saved_robot is None
         starts = ", and a robot starts at its pose if there is room" if is_start else ""
         path = "/".join((*parent.names, name))
-        self.report(f"the robot '{path}' is left out{starts}", element, is_different=True)
+        self.note(f"the robot '{path}' is left out{starts}", element, is_different=True)
         self.saved_robot = self.saved_robot or self.state.get(path, pose).on_plane()
 
     def unused_name(self, name: str, parent: Parent, element: Element, include: Optional[Element] = None) -> str:
@@ -134,6 +134,6 @@ class Contents:
             unused = f"{name}_{number}"
         if unused != name:
             what = f"the name '{name}' is already taken, so this {element.tag} is called '{unused}'"
-            self.report(what, element if include is None else include, is_different=True)
+            self.note(what, element if include is None else include, is_different=True)
         self.used.add((*parent.names, unused))
         return unused

@@ -40,7 +40,7 @@ def read_world(path: str) -> World:
         reader.model(root, Parent())
         return reader.world(xml.name_of(root))
     reader.check_children(root, "frame", "include", "model", "state")
-    reader.state = state_poses(root, reader.report)
+    reader.state = state_poses(root, reader.note)
     reader.spawn, reader.keeps_robots = _spawn(root), False
     reader.children(root, Parent())
     return reader.world(xml.name_of(root))
@@ -112,7 +112,7 @@ class _Reader(Contents):
         try:
             root = xml.parse(path)
             if root.tag == "robot":
-                self.report(f"an include is left out: '{uri}' is a URDF", include, is_different=True)
+                self.note(f"an include is left out: '{uri}' is a URDF", include, is_different=True)
                 return
             included = xml.root_of(root, ("actor", "light", "model"))
             if included.tag == "model":
@@ -143,7 +143,7 @@ class _Reader(Contents):
             return name
         self.check_children(model, "include", "link", "model", "pose", "static")
         if model.get("placement_frame"):
-            self.report(f"placement_frame of model '{model.get('name')}' is left out", model, is_different=True)
+            self.note(f"placement_frame of model '{model.get('name')}' is left out", model, is_different=True)
         self.count += 1
         if self.count > MAX_MODELS:
             raise xml.error(model, f"more than {MAX_MODELS} models; supported: {MAX_MODELS}")
@@ -154,7 +154,7 @@ class _Reader(Contents):
             self.models[name] = pose
         motion = motion_of(model, pose) or parent.motion
         if not (static or parent.names or motion or any(it.startswith(MOTION) for it in self.ignored)):
-            self.report(f"{MOTION}, such as '{name}'", model)
+            self.note(f"{MOTION}, such as '{name}'", model)
         inherited = Parent(pose, names, motion, bool(static) or parent.static)
         for link in model.iterchildren("link"):
             self.link(link, inherited)

@@ -205,6 +205,7 @@ def _sent(*positions):
     "goals, words",
     [
         ([(0.5, 1.0, 0.0), (1.0, 1.2, -0.4), (5.0, -0.6, 0.9)], "sends a goal without a click"),
+        ([], "No goal was sent"),
         ([(5.0, -0.6, 0.9)], "The click was not forwarded"),
         ([(1.0, 1.2, -0.4)], "The click was not forwarded"),
         ([(1.0, 1.2, -0.4), (5.0, -0.6, 0.9), (6.0, -0.6, 0.9)], "sent more than once"),

@@ -11,11 +11,7 @@ from robocop_grading.checks import CHECKS, PASSED, Failed, NotReached
 from robocop_grading.record import Record
 
 
-@pytest.mark.parametrize(
-    "name",
-    "feedback_rate feedback_position feedback_angle turns_to_goal drives_straight reaches_goal success_result "
-    "stands_at_end one_ending no_exception stays_alive".split(),
-)
+@pytest.mark.parametrize("name", [name for name, check in CHECKS.items() if RIGHT.name in check.scenarios])
 def test_correct_run_passes(name):
     assert CHECKS[name](RIGHT, LIMITS) is PASSED
 
@@ -56,6 +52,15 @@ def commanded_before(command):
 
 FOR_EVER = tuple(replace(RIGHT.feedback[-1], time=10.5 + tick / 10.0) for tick in range(8))
 THERE = (replace(RIGHT.goals[0], x=-0.03, y=0.03),)
+SUCCEEDED = (rec.Result(10.0, "g", rec.SUCCEEDED, True, "there"),)
+HIT = tuple(replace(it, touching=it.time > 9.0) for it in RIGHT.samples)
+
+
+def _cancelled(status, success):
+    """A goal that ends 0.2 s after a cancel request."""
+    return changed(cancels=(rec.Cancel(5.0, "g"),), results=(rec.Result(5.2, "g", status, success, "x"),))
+
+
 WRONG = [
     ("feedback_rate", changed(feedback=()), "No feedback was sent at all"),
     ("feedback_rate", changed(feedback=RIGHT.feedback[::5]), "not sent in each iteration"),
@@ -110,6 +115,21 @@ WRONG = [
         "No result or an empty one",
     ),
     ("success_result", changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, True, ""),)), "empty"),
+    ("success_result", changed(results=(rec.Result(10.0, "g", rec.SUCCEEDED, False, "there"),)), "contradicts the"),
+    ("cancel", _cancelled(rec.ABORTED, False), "Call set_preempted for a goal that is cancelled"),
+    ("cancel", _cancelled(rec.PREEMPTED, True), "result.success is true although the goal was not reached"),
+    ("stops_at_obstacle", _aborted(results=SUCCEEDED), "set_succeeded is called although the goal failed"),
+    ("stops_at_obstacle", _aborted(results=SUCCEEDED, samples=HIT), "obstacle ahead was nearer than 0.3 m"),
+    (
+        "stops_at_obstacle",
+        _aborted(results=SUCCEEDED, samples=HIT, other_types=(("/scan", "a/PointCloud2", "a/LaserScan"),)),
+        "/scan is used with the wrong type, a/PointCloud2; its type is a/LaserScan",
+    ),
+    (
+        "stops_at_obstacle",
+        _aborted(results=SUCCEEDED, samples=HIT, unpublished=("/odometry", "/laser")),
+        "The node subscribes to /laser, which nobody publishes; the laser's topic is /scan",
+    ),
     ("stands_at_end", changed(samples=tuple(replace(s, v=0.2) for s in RIGHT.samples)), "kept moving"),
     ("one_ending", changed(results=RIGHT.results * 2), "two terminal states"),
     ("one_ending", logged(ERROR + TWO), "two terminal states"),
@@ -150,9 +170,7 @@ def test_mistake_fails_its_check_with_the_cause(name, record, words):
 
 
 @pytest.mark.parametrize("name", CHECKS)
-def test_empty_record_passes_only_the_checks_of_exceptions_and_deaths_and_fails_only_those_of_what_is_missing(
-    name,
-):
+def test_empty_record_passes_only_the_checks_of_exceptions_and_deaths_and_fails_only_those_of_what_is_missing(name):
     kinds = {"action_server": Failed, "waits_for_server": Failed}
     kinds.update(dict.fromkeys(("no_exception", "stays_alive", "bridge_alive"), type(PASSED)))
     verdict = CHECKS[name](Record("start", "server", up=False), LIMITS)

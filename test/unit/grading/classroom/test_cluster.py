@@ -1,4 +1,4 @@
-"""Why a task of a cluster has no result."""
+"""Why a task of a cluster has no result, or why there is no cluster."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from robocop_grading.classroom import cluster
-from robocop_grading.errors import UngradableError
+from robocop_grading.errors import GradingSetupError, UngradableError
 
 
 @pytest.mark.parametrize(
@@ -26,3 +26,10 @@ def test_path_is_told_with_what_went_wrong(status, error, problem, monkeypatch):
     monkeypatch.setattr(cluster, "as_completed", list)
     client = SimpleNamespace(map=lambda task, paths, pure: [Future() for _ in paths])
     assert list(cluster.done(client, print, [Path("anna")])) == [(Path("anna"), problem)]
+
+
+@pytest.mark.filterwarnings("ignore:make_current")
+def test_scheduler_that_can_not_be_reached_is_named():
+    refused = pytest.raises(GradingSetupError, match="no dask scheduler answers at tls://127.0.0.1:1: ")
+    with refused, cluster.connected("tls://127.0.0.1:1", 1):
+        pass

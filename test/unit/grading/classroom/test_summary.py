@@ -6,24 +6,9 @@ from robocop_grading.classroom.summary import Summary, pace
 
 
 def test_figures_are_those_of_the_hand_ins_that_were_judged():
-    assert Summary((3.0, 1.5, 2.0, 1.0), 4, 3.0).lines() == [
-        "4 judged, 4 not gradable",
-        "mean 1.88, median 1.75 of 3 points",
-        "  0 to < 1    0",
-        "  1 to < 2    2 " + "#" * 40,
-        "  2 to < 3    1 " + "#" * 20,
-        "         3    1 " + "#" * 20,
-    ]
-    assert Summary((), 4, 8.0).lines() == ["0 judged, 4 not gradable"]
-
-
-@pytest.mark.parametrize("available", [0.0, 0.5, 1.0, 2.0, 7.5, 8.0, 10.0, 95.0, 1000.0])
-def test_histogram_has_a_few_bars_and_everybody_in_one_of_them(available):
-    points = [available * number / 200.0 for number in range(201)]
-    histogram = Summary(points, 0, available).histogram
-    assert sum(count for _, count in histogram) == 201
-    assert len(histogram) <= 11 and histogram[-1][0] == f"{available:g}"
-    assert histogram[-1][1] == (201 if available == 0.0 else 1), "full marks have a bar of their own"
+    figures = Summary((3.0, 1.5, 2.0, 1.0), 4, 3.0)
+    assert (figures.counts, figures.averages) == ("4 judged, 4 not gradable", "mean 1.88, median 1.75 of 3 points")
+    assert (Summary((), 4, 8.0).counts, Summary((), 4, 8.0).averages) == ("0 judged, 4 not gradable", "")
 
 
 @pytest.mark.parametrize(

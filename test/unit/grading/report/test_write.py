@@ -10,7 +10,7 @@ import pytest
 from grading_records import PLAN, RIGHT, changed
 from support import ROOT
 
-from robocop_grading.cli import as_text
+from robocop_grading.cli import in_short
 from robocop_grading.judge import judge
 from robocop_grading.record import Record
 from robocop_grading.report import write as report
@@ -45,10 +45,18 @@ def test_scenarios_in_which_every_check_passed_have_plots_only_if_all_are_asked_
 def test_what_follows_from_a_mistake_is_one_line_below_it(tmp_path):
     grade, html = written(tmp_path, STUCK, replace(STUCK, name="odd_scan"))
     (mistake,) = [it for it in grade.mistakes if "odd_scans" in {check.name for check in it.followers}]
-    lines = as_text(grade, {}).splitlines()
-    for text in (html, (tmp_path / "summary.md").read_text(), "\n".join(lines)):
-        assert text.count(mistake.consequences) == 1 and "This follows from" not in text
+    assert html.count(mistake.consequences) == 1 and "This follows from" not in html
     assert "failed because of it: " in mistake.consequences and "odd_scans" in mistake.consequences
+
+
+def test_terminal_has_each_mistake_with_its_cost_and_what_was_seen_the_problems_and_the_points(tmp_path):
+    grade = replace(written(tmp_path, MOVING)[0], notes=("a note",), problems=("server: a \x1b[31mproblem",))
+    mistake, seen, *others, problem, notes, points = in_short(grade)
+    assert re.match(r"stands_at_end costs [\d.]+ points?: The robot kept moving", mistake)
+    assert seen.startswith("    Expected ") and seen.endswith('s of scenario "left"')
+    assert others and all(it.startswith("not reached: ") for it in others)
+    assert (problem, notes) == ("problem: server: a  [31mproblem", "notes, which cost no points: 1, in the report")
+    assert points == f"<anna>: {grade.words}"
 
 
 @pytest.mark.parametrize("moves", [False, True])
@@ -73,10 +81,9 @@ def test_folder_of_the_report_is_made_with_those_above_it(tmp_path):
     assert (report.make_report_folder(tmp_path / "a" / "b", "stamp") / "stamp").is_file()
 
 
-def test_every_report_and_the_terminal_say_which_files_were_graded(tmp_path):
+def test_every_report_says_which_files_were_graded(tmp_path):
     file = "server: scripts/robocop_goto_as.py; not graded: backup/robocop_goto_as.py"
     grade = replace(judge("anna", PLAN, {"server": {"left": RIGHT}}, {}), files=(file,))
     report.write(grade, PLAN, {"server": {"left": RIGHT}}, tmp_path)
-    for name in ("report.html", "summary.md", "report.json", "results.json"):
+    for name in ("report.html", "report.json", "results.json"):
         assert file in (tmp_path / name).read_text(), name
-    assert f"graded: {file}" in as_text(grade, {}).splitlines()

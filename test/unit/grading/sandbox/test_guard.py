@@ -5,9 +5,9 @@ import sys
 
 import pytest
 
-from aro_robocop_goto_as.process.child import kill_tree
 from robocop_grading.sandbox import guard as module
 from robocop_grading.sandbox.guard import Guard
+from robocop_hosting.child import kill_tree
 
 MB = 1024**2
 TIMEOUT = 120.0  # [s, wall]

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import pytest
 
 from aro_robocop_goto_as.names import COMMAND_VARIABLE, SERVER
-from aro_robocop_goto_as.probes import x_display
 from aro_robocop_goto_as.ros.cli.overview import overview
 from aro_robocop_goto_as.web import access
 
@@ -31,8 +30,7 @@ def test_the_address_of_the_web_page_is_shown_if_it_is_started(monkeypatch, argu
     assert "view" not in shown("robocop_sim")
 
 
-def test_a_recording_says_where_it_is_shown_and_that_it_waits_for_a_browser(monkeypatch):
-    monkeypatch.setattr(x_display, "answers", lambda: True)
+def test_a_recording_says_where_it_is_shown_and_that_it_waits_for_a_browser():
     arguments = "web_host:=192.0.2.1 web_port:=8090 replay:='/a.bag'"
     assert shown("replay", arguments=arguments)["view"].startswith("in a browser: http://192.0.2.1:8090; it plays when")
     assert shown("replay", "rviz", arguments=arguments)["view"] == "in a browser: http://192.0.2.1:8090"
@@ -41,13 +39,6 @@ def test_a_recording_says_where_it_is_shown_and_that_it_waits_for_a_browser(monk
 def test_goals_are_offered_only_with_a_server():
     assert "send a goal" in shown("aro_robocop_goto_as_node")
     assert "send a goal" not in shown("robocop_sim")
-
-
-def test_rviz_is_no_way_to_send_a_goal_where_there_is_no_display(monkeypatch):
-    monkeypatch.setenv("DISPLAY", "")
-    nodes = [SimpleNamespace(name=name, namespace="/", args="") for name in (SERVER, "rviz")]
-    text = overview(nodes, {}, Path("/logs"), False)
-    assert "RViz" not in text and "goto" in text
 
 
 @pytest.mark.parametrize(

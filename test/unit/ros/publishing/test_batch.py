@@ -6,7 +6,6 @@ import struct
 import threading
 import weakref
 from types import SimpleNamespace
-from typing import Any, Callable, Iterator, List
 
 import pytest
 import rospy
@@ -27,10 +26,10 @@ class Connection:
 
     endpoint_id, name = "/subscriber", "/topic"
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.closed = False
 
-    def close(self) -> None:
+    def close(self):
         """As rospy's: called for a subscriber that is lost."""
         self.closed = True
 
@@ -38,31 +37,31 @@ class Connection:
 class Subscriber:
     """One end of a socket pair; the other one is a subscriber's."""
 
-    def __init__(self, timeout: bytes) -> None:
+    def __init__(self, timeout):
         near, self.socket = socket.socketpair()
         self.connection = Connection()
         self.link = SubscriberLink(self.connection, near)
         self.set_timeout(timeout)
 
-    def set_timeout(self, timeout: bytes) -> None:
+    def set_timeout(self, timeout):
         """Set how long one send may wait for it."""
         self.link.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, timeout)
 
-    def received(self, size: int) -> bytes:
+    def received(self, size):
         """The next bytes."""
         return received(self.socket, size)
 
-    def close(self) -> None:
+    def close(self):
         """Disconnect."""
         self.socket.close()
         self.link.socket.close()
 
 
 @pytest.fixture(name="subscriber")
-def _subscriber() -> Iterator[Callable[..., Subscriber]]:
-    made: List[Subscriber] = []
+def _subscriber():
+    made = []
 
-    def make(timeout: bytes = LONG) -> Subscriber:
+    def make(timeout=LONG):
         made.append(Subscriber(timeout))
         return made[-1]
 
@@ -71,7 +70,7 @@ def _subscriber() -> Iterator[Callable[..., Subscriber]]:
         subscriber.close()
 
 
-def topic_of(*subscribers: Subscriber) -> Any:
+def topic_of(*subscribers):
     """Stands for a DirectPublisher with these subscribers."""
     impl = SimpleNamespace(
         is_latch=False,
@@ -82,39 +81,37 @@ def topic_of(*subscribers: Subscriber) -> Any:
     return SimpleNamespace(links=tuple(one.link for one in subscribers), impl=impl)
 
 
-def spied(subscriber: Subscriber, before: Callable[[int], Any]) -> Any:
+def spied(subscriber, before):
     """Stands for its link's socket; `before` is called with the flags of each send."""
     near = subscriber.link.socket
 
-    def send(data: memoryview, flags: int) -> int:
+    def send(data, flags):
         before(flags)
         return near.send(data, flags)
 
     return SimpleNamespace(send=send, close=near.close, getpeername=near.getpeername, getsockname=near.getsockname)
 
 
-def counted(beams: int) -> PackedMessage:
+def counted(beams):
     """A scan whose header's number is counted on with each send."""
     return PackedMessage(LaserScan(ranges=[1.0] * beams), {"header": counter()})
 
 
-def scan(beams: int) -> PackedMessage:
+def scan(beams):
     """A message of about 4 bytes a beam."""
     return PackedMessage(LaserScan(ranges=[1.0] * beams))
 
 
-def test_a_message_without_a_subscriber_lives_as_long_as_its_batch_which_fills_it() -> None:
+def test_a_message_without_a_subscriber_lives_as_long_as_its_batch_which_fills_it():
     message = counted(10)
     kept, batch = weakref.ref(message), Batch([(topic_of(), message)])
     del message
     gc.collect()
     batch.send(7 * 10**9)
-    assert struct.unpack_from("<2I", kept().data, 4) == (1, 7)  # type: ignore[union-attr]  # the header's seq and secs
+    assert struct.unpack_from("<2I", kept().data, 4) == (1, 7)  # the header's seq and secs
 
 
-def test_each_subscriber_gets_the_messages_of_its_topics_in_order_also_of_steps_that_follow_at_once(
-    subscriber: Callable[..., Subscriber],
-) -> None:
+def test_each_subscriber_gets_the_messages_of_its_topics_in_order_also_of_steps_that_follow_at_once(subscriber):
     first, second = subscriber(), subscriber()
     both, one = topic_of(first, second), topic_of(second)
     messages = [counted(10), PackedMessage(Clock()), counted(20)]
@@ -126,18 +123,16 @@ def test_each_subscriber_gets_the_messages_of_its_topics_in_order_also_of_steps_
     assert (first.received(len(of_first)), second.received(len(of_second))) == (of_first, of_second)
 
 
-def _gone(reader: Subscriber) -> None:
+def _gone(reader):
     reader.socket.close()
 
 
-def _shut_down(reader: Subscriber) -> None:
+def _shut_down(reader):
     reader.link.socket.shutdown(socket.SHUT_RDWR)  # as rospy does before it closes a connection
 
 
 @pytest.mark.parametrize("fault", [_gone, _shut_down])
-def test_lost_subscriber_is_disconnected_and_the_others_get_everything(
-    subscriber: Callable[..., Subscriber], fault: Callable[[Subscriber], None]
-) -> None:
+def test_lost_subscriber_is_disconnected_and_the_others_get_everything(subscriber, fault):
     lost, reader, message = subscriber(), subscriber(), scan(100)
     batch = Batch([(topic_of(lost), message), (topic_of(reader), message)])
     fault(lost)
@@ -150,7 +145,7 @@ def test_lost_subscriber_is_disconnected_and_the_others_get_everything(
     assert not reader.connection.closed
 
 
-def send_until_it_stands_still(batch: Batch, reader: Subscriber) -> int:
+def send_until_it_stands_still(batch, reader):
     """How many messages are sent until a subscriber that does not read is not waited for any more."""
     for sent in range(1, MANY):
         batch.send(0)
@@ -161,9 +156,9 @@ def send_until_it_stands_still(batch: Batch, reader: Subscriber) -> int:
 
 @pytest.mark.parametrize("beams", [3, 100, 1_000_000])
 def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_when_it_reads_again(
-    subscriber: Callable[..., Subscriber], beams: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    said: List[str] = []
+    subscriber, beams, monkeypatch
+):
+    said = []
     monkeypatch.setattr(rospy, "logwarn", lambda text, *_: said.append(text))
     monkeypatch.setattr(rospy, "loginfo", lambda text, *_: said.append(text))
     frozen, message = subscriber(SHORT), counted(beams)
@@ -173,7 +168,7 @@ def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_wh
         batch.send(0)  # which it misses
     frozen.set_timeout(LONG)  # it reads from here on
 
-    def read() -> None:
+    def read():
         while True:
             part = frozen.socket.recv(1_000_000)
             if not part:
@@ -197,9 +192,7 @@ def test_subscriber_that_stands_still_stays_connected_and_gets_whole_messages_wh
     assert [text.split(";")[0] for text in said] == ["%s has stopped reading", "%s reads again"]
 
 
-def test_nobody_waits_for_a_subscriber_that_stands_still(
-    subscriber: Callable[..., Subscriber], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nobody_waits_for_a_subscriber_that_stands_still(subscriber, monkeypatch):
     frozen, reader, message, clock = subscriber(SHORT), subscriber(), scan(100), PackedMessage(Clock())
     both = topic_of(frozen, reader)
     batch = Batch([(both, message)], [(topic_of(reader), clock)])
@@ -217,13 +210,13 @@ def test_nobody_waits_for_a_subscriber_that_stands_still(
     assert not frozen.connection.closed
 
 
-def test_messages_on_one_connection_are_not_mixed(subscriber: Callable[..., Subscriber]) -> None:
+def test_messages_on_one_connection_are_not_mixed(subscriber):
     reader, messages = subscriber(), [scan(1_000_000), scan(10)]
-    received: List[bytes] = []
+    received = []
     size = sum(message.size for message in messages)
     thread = threading.Thread(target=lambda: received.append(reader.received(size)))
 
-    def begin(_flags: int) -> None:
+    def begin(_flags):
         if not thread.is_alive():
             thread.start()  # there is room in the socket as soon as a part of the first message is read
 
@@ -233,11 +226,11 @@ def test_messages_on_one_connection_are_not_mixed(subscriber: Callable[..., Subs
     assert received == [b"".join(message.data.tobytes() for message in messages)]
 
 
-def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber: Callable[..., Subscriber]) -> None:
+def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber):
     slow, reader, message, clock = subscriber(), subscriber(), scan(100_000), PackedMessage(Clock())
     thread = threading.Thread(target=slow.received, args=(message.size,))
 
-    def look(_flags: int) -> None:
+    def look(_flags):
         reader.socket.setblocking(False)
         with pytest.raises(BlockingIOError):
             reader.socket.recv(1)
@@ -251,16 +244,14 @@ def test_clock_waits_for_messages_that_a_full_socket_delays(subscriber: Callable
     assert not slow.connection.closed
 
 
-def _full(reader: Subscriber) -> None:
+def _full(reader):
     with pytest.raises(BlockingIOError):
         while True:
             reader.link.socket.send(bytes(1000), socket.MSG_DONTWAIT)
 
 
 @pytest.mark.parametrize("beams", [10, 100_000], ids=["nothing is taken", "a part is taken"])
-def test_subscribers_that_stall_together_are_waited_for_only_once(
-    subscriber: Callable[..., Subscriber], beams: int
-) -> None:
+def test_subscribers_that_stall_together_are_waited_for_only_once(subscriber, beams):
     stalled, waited = [subscriber(SHORT) for _ in range(5)], []
     for number, one in enumerate(stalled):
         if beams < 1000:
@@ -271,14 +262,12 @@ def test_subscribers_that_stall_together_are_waited_for_only_once(
     assert set(waited) <= {0}
 
 
-def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(
-    subscriber: Callable[..., Subscriber],
-) -> None:
+def test_subscriber_that_reads_while_another_one_stalls_gets_its_message_whole(subscriber):
     stalled, slow, message = subscriber(SHORT), subscriber(), scan(100_000)
-    received: List[bytes] = []
+    received = []
     reading = threading.Thread(target=lambda: received.append(slow.received(message.size - 100_000)))
 
-    def read_meanwhile(flags: int) -> None:
+    def read_meanwhile(flags):
         if not flags and not received:
             received.append(slow.received(100_000))
             reading.start()

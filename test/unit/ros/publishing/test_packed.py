@@ -2,7 +2,6 @@
 
 import struct
 from io import BytesIO
-from typing import Any, Tuple
 
 import pytest
 from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
@@ -31,7 +30,7 @@ ODOMETRY.twist.twist.angular.z = 5.0
         (TWO, "transforms[1].transform", range(1, 8)),
     ],
 )
-def test_numbers_of_a_part_begin_where_they_are_serialized(message: Any, part: str, numbers: Tuple[float, ...]) -> None:
+def test_numbers_of_a_part_begin_where_they_are_serialized(message, part, numbers):
     body = BytesIO()
     message.serialize(body)
     kind, start = places(message)[part]

@@ -4,25 +4,24 @@ import socket
 import threading
 import weakref
 from types import SimpleNamespace
-from typing import Callable, Iterator, List
 
 import pytest
 import rospy
 from sensor_msgs.msg import LaserScan
-from subscriber_links import LONG, SHORT, Link, received
+from subscriber_links import LONG, SHORT, received
 
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage
-from aro_robocop_goto_as.ros.publishing.publisher import DirectPublisher, publisher, resume
+from aro_robocop_goto_as.ros.publishing.publisher import publisher, resume
 
 SCAN = PackedMessage(LaserScan(ranges=[1.0] * 360))
 
 
 @pytest.fixture(name="topic")
-def _topic() -> Iterator[Callable[..., DirectPublisher]]:
-    made: List[DirectPublisher] = []
+def _topic():
+    made = []
 
-    def make(latch: bool = False) -> DirectPublisher:
+    def make(latch=False):
         made.append(publisher(f"/topic_{len(made)}", LaserScan, latch))
         return made[-1]
 
@@ -31,9 +30,7 @@ def _topic() -> Iterator[Callable[..., DirectPublisher]]:
         topic.unregister()
 
 
-def test_descriptors_of_gone_subscribers_are_closed(
-    topic: Callable[..., DirectPublisher], connect: Callable[[DirectPublisher], Link]
-) -> None:
+def test_descriptors_of_gone_subscribers_are_closed(topic, connect):
     scans = topic()
     links = [connect(scans) for _ in range(10)]
     duplicates = [weakref.ref(link.socket) for link in scans.links]
@@ -46,15 +43,13 @@ def test_descriptors_of_gone_subscribers_are_closed(
     assert len(duplicates) == 10 and not any(duplicate() for duplicate in duplicates)
 
 
-def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_connected(
-    topic: Callable[..., DirectPublisher], connect: Callable[[DirectPublisher], Link]
-) -> None:
+def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_connected(topic, connect):
     scans, new = topic(), []
     gone, slow = connect(scans), connect(scans)
     number = gone.connection.fileno()
     gone.connection.socket.shutdown(socket.SHUT_RDWR)
 
-    def send(rest: memoryview, _flags: int) -> int:
+    def send(rest, _flags):
         new.append(connect(scans).connection)
         scans.impl.check()  # as one of rospy's threads does twice a second
         return len(rest)
@@ -67,19 +62,17 @@ def test_new_subscriber_with_the_descriptor_number_of_one_that_is_gone_stays_con
     kept.close()
 
 
-def _set_timeout(link: Link, timeout: bytes) -> None:
+def _set_timeout(link, timeout):
     link.connection.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, timeout)
 
 
-def _serialized(beams: int, seq: int) -> bytes:
+def _serialized(beams, seq):
     message = LaserScan(ranges=[1.0] * beams)
     message.header.seq = seq
     return PackedMessage(message).data.tobytes()
 
 
-def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_again(
-    topic: Callable[..., DirectPublisher], connect: Callable[[DirectPublisher], Link]
-) -> None:
+def test_subscriber_of_a_latched_topic_gets_its_newest_message_when_it_reads_again(topic, connect):
     latched, many = topic(latch=True), 3_000_000  # beams: more than a socket takes at once
     link = connect(latched)
     _set_timeout(link, SHORT)

@@ -2,7 +2,6 @@
 
 import math
 from io import BytesIO
-from typing import Callable, List
 
 import pytest
 from geometry_msgs.msg import Twist
@@ -12,23 +11,21 @@ from aro_robocop_goto_as.errors import FrameError, WorldError
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D, Twist2D
 from aro_robocop_goto_as.reading import parse_xml
 from aro_robocop_goto_as.ros.sim import gazebo_topics
-from aro_robocop_goto_as.simulation.simulator import Simulator
 from aro_robocop_goto_as.world.edit import with_model, with_model_at
 from aro_robocop_goto_as.world.sdf.reader import read_model
 
 BOX = b"""<sdf version="1.6"><model name="box"><static>1</static><link name="l"><collision name="c"><geometry><box>
 <size>1 1 1</size></box></geometry></collision></link></model></sdf>"""
-Make = Callable[..., Simulator]
 
 
 @pytest.mark.parametrize("name", ["ModelStates", "LinkStates"])
-def test_types_have_gazebos_names_and_md5sums(name: str) -> None:
+def test_types_have_gazebos_names_and_md5sums(name):
     kind = gazebo_topics.message_type(name)
     assert kind._type == f"gazebo_msgs/{name}"
     assert kind._md5sum == "48c080191eb15c41858319b4d8a609c2"
 
 
-def test_states_hold_models_robots_and_their_wheels_in_the_world(simulator: Make) -> None:
+def test_states_hold_models_robots_and_their_wheels_in_the_world(simulator):
     sim = simulator("stage_2", Pose2D(1.0, -1.0, math.pi / 2.0), drive="kinematic", max_linear_acceleration=1e3)
     sim.command(Twist2D(0.2, 0.0))
     for _ in range(24):
@@ -47,7 +44,7 @@ def test_states_hold_models_robots_and_their_wheels_in_the_world(simulator: Make
     assert b"robot_1" in content.getvalue()
 
 
-def test_what_was_spawned_comes_after_the_robot_and_what_was_moved_does_not(simulator: Make) -> None:
+def test_what_was_spawned_comes_after_the_robot_and_what_was_moved_does_not(simulator):
     sim = simulator("empty", drive="kinematic")
     box = parse_xml(BOX, "box", WorldError)
     sim.change_world(with_model(sim.world, read_model(box, "goal", Pose3D((1.0, 0.0, 0.0)))))
@@ -62,9 +59,7 @@ def test_what_was_spawned_comes_after_the_robot_and_what_was_moved_does_not(simu
     "reference, expected",
     [("", (0.0, 0.2)), ("world", (0.0, 0.2)), ("robot_1", (0.0, 0.0)), ("robot_2", (0.3, 0.0))],
 )
-def test_velocity_of_a_model_is_in_the_axes_of_its_reference(
-    simulator: Make, reference: str, expected: "tuple[float, float]"
-) -> None:
+def test_velocity_of_a_model_is_in_the_axes_of_its_reference(simulator, reference, expected):
     # Both face along y; the second one backs up.
     ahead, aside = Pose2D(0.0, 0.0, math.pi / 2.0), Pose2D(2.0, 0.0, math.pi / 2.0)
     sim = simulator("empty", ahead, aside, drive="kinematic", max_linear_acceleration=1e3)
@@ -84,7 +79,7 @@ def test_velocity_of_a_model_is_in_the_axes_of_its_reference(
         ([f"wall_{i}" for i in range(9)], "model [tables] does not exist"),
     ],
 )
-def test_an_unknown_name_is_refused_in_a_line_that_rosservice_does_not_wrap(known: List[str], told: str) -> None:
+def test_an_unknown_name_is_refused_in_a_line_that_rosservice_does_not_wrap(known, told):
     states = [(name, Pose3D(), Twist()) for name in known]
     with pytest.raises(FrameError) as refused:
         gazebo_topics.state_of("tables", states)

@@ -2,7 +2,6 @@
 
 from io import BytesIO
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -18,14 +17,14 @@ from aro_robocop_goto_as.world.model import Occupancy
 CELLS = np.array([[-1, 0, 100], [50, -128, 127]], np.int8)
 
 
-def _bytes_of(message: Any) -> bytes:
+def _bytes_of(message):
     content = BytesIO()
     message.serialize(content)
     return content.getvalue()
 
 
 @pytest.mark.filterwarnings("ignore:tostring")
-def test_its_bytes_are_those_of_an_ordinary_message() -> None:
+def test_its_bytes_are_those_of_an_ordinary_message():
     packed = to_grid(Occupancy(CELLS, 0.05, Pose2D(-1.0, 2.0, 0.5)), Time(3, 4), "map")
     ordinary = OccupancyGrid(packed.header, packed.info, CELLS.ravel().tolist())
     assert (ordinary.info.width, ordinary.info.height, ordinary.header.stamp) == (3, 2, Time(3, 4))
@@ -33,8 +32,8 @@ def test_its_bytes_are_those_of_an_ordinary_message() -> None:
     assert _bytes_of(MapResponse(packed)) == _bytes_of(GetMapResponse(ordinary))
 
 
-def test_the_whole_world_has_each_robots_name_in_its_frame(simulator: Any, monkeypatch: Any) -> None:
-    sent: list[Any] = []
+def test_the_whole_world_has_each_robots_name_in_its_frame(simulator, monkeypatch):
+    sent = []
     monkeypatch.setattr(world_topics, "publisher", lambda *_, **__: SimpleNamespace(publish=sent.append))
     WorldTopics(simulator("empty")).publish()
     named = [(m.text, m.header.frame_id) for m in sent[-1]._make() if m.ns == "names"]

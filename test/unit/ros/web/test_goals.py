@@ -1,6 +1,5 @@
 """What a click on the floor requests, and what is shown of the newest goal."""
 
-import re
 from unittest.mock import MagicMock
 
 import pytest
@@ -117,19 +116,6 @@ def test_a_goal_that_has_ended_is_no_longer_shown_when_robots_are_placed_anew():
         part._on_status(0.0, ended)  # as its server does for some seconds
         part.show(context.state.now)
         assert ("SUCCEEDED" in part._goal_html.content) == is_shown
-
-
-def test_the_rows_above_the_buttons_are_the_same_with_and_without_a_goal():
-    part, context = made()
-
-    def rows():
-        part.show(context.state.now)
-        return re.findall(r"nowrap\">(\w+)<", part._goal_html.content)
-
-    idle = rows()
-    part._on_feedback(0.0, GoToPositionActionFeedback())
-    part._on_status(0.0, GoalStatusArray(status_list=[GoalStatus(status=GoalStatus.ACTIVE)]))
-    assert rows() == idle == ["goal", "errors"]
 
 
 def test_a_goal_that_the_bridge_keeps_for_a_server_that_is_down_can_be_cancelled():

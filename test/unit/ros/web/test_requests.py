@@ -36,7 +36,7 @@ def test_a_request_that_fails_says_so_and_the_next_one_is_served(monkeypatch, ki
 
 def test_a_page_that_only_watches_sends_nothing(monkeypatch):
     Service(monkeypatch, [requests.rospy.ServiceException("it was called")])
-    state = SharedState(PageState(live=False))
+    state = SharedState(PageState(can_send=False))
     made = requests.Requests(state)
     made.call("pause", "pause", object)
     made._worker.shutdown()

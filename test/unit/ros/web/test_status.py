@@ -6,7 +6,7 @@ from unittest.mock import MagicMock
 import pytest
 from aro_robocop_goto_as.msg import SimStatus
 
-from aro_robocop_goto_as.probes import master
+from aro_robocop_goto_as.ros import graph
 from aro_robocop_goto_as.ros.web.frames import Frames
 from aro_robocop_goto_as.ros.web.part import Context
 from aro_robocop_goto_as.ros.web.status import StatusPart
@@ -18,7 +18,7 @@ def made(state):
 
 
 def test_a_page_that_no_simulator_has_reported_to_says_whether_one_runs(monkeypatch):
-    monkeypatch.setattr(master, "no_simulator", lambda uri: "no simulator is running")
+    monkeypatch.setattr(graph, "no_simulator", lambda: "no simulator is running")
     status = made(PageState())
     status._alert = MagicMock()  # not the same as the other elements
     status.ask_master(PageState())

@@ -62,7 +62,7 @@ def test_a_goal_that_may_be_executed_is_cancelled_once_when_driving_begins(monke
 
 
 def test_a_page_that_only_watches_drives_nothing(monkeypatch):
-    pad, _ = driven(monkeypatch, Publishers(), live=False)
+    pad, _ = driven(monkeypatch, Publishers(), can_send=False)
     pad.drive(1, LEFT)
     assert not pad._dead_man.active
 

@@ -108,30 +108,26 @@ WITH_NORMALS = TRIANGLES.replace("<p>0 1 2<", '<input semantic="{}" source="#n" 
 POLYGONS = (
     '<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><vcount>3</vcount><p>0 1 2</p></polylist>'
 )
-VARIANTS = {  # case: (part of the file, what is there instead)
-    "a polygon": (f'<triangles count="1">{TRIANGLES}</triangles>', POLYGONS),
-    "an effect and an image that are missing": (
+VARIANTS = {  # case: parts of the file, and what is there instead
+    "a polygon": {f'<triangles count="1">{TRIANGLES}</triangles>': POLYGONS},
+    "an effect, an image, a material, a light and a camera that are missing": {
+        "<library_geometries>": "<library_images><image/></library_images><library_effects><effect/></library_effects>"
         "<library_geometries>",
-        "<library_images><image/></library_images><library_effects><effect/></library_effects><library_geometries>",
-    ),
-    "a material that is missing": (
-        '<instance_geometry url="#g"/>',
-        """<instance_geometry url="#g"><bind_material>
-        <technique_common><instance_material symbol="m" target="#gone"/></technique_common></bind_material>
-        </instance_geometry>""",
-    ),
-    "a light and a camera that are missing": (
-        '<instance_geometry url="#g"/>',
-        '<instance_light url="#l"/><instance_camera url="#c"/><instance_geometry url="#g"/>',
-    ),
-    "normals that are cut off": (VERTICES, NORMALS.format("five") + VERTICES),
-    "normals that are missing": (TRIANGLES, WITH_NORMALS.format("NORMAL", 0)),
-    "normals of the vertices that are missing": (VERTICES, VERTICES + '<input semantic="NORMAL" source="#n"/>'),
+        '<instance_geometry url="#g"/>': """<instance_light url="#l"/><instance_camera url="#c"/>
+        <instance_geometry url="#g"><bind_material><technique_common><instance_material symbol="m" target="#gone"/>
+        </technique_common></bind_material></instance_geometry>""",
+    },
+    "normals that are cut off": {VERTICES: NORMALS.format("five") + VERTICES},
+    "normals that are missing": {TRIANGLES: WITH_NORMALS.format("NORMAL", 0)},
+    "normals of the vertices that are missing": {VERTICES: VERTICES + '<input semantic="NORMAL" source="#n"/>'},
 }
 
 
-@pytest.mark.parametrize(("part", "instead"), VARIANTS.values(), ids=VARIANTS)
-def test_only_the_geometry_of_a_collada_file_counts(tmp_path, part, instead):
-    assert TRIANGLE_DAE.count(part) == 1
-    (tmp_path / "t.dae").write_text(TRIANGLE_DAE.replace(part, instead))
+@pytest.mark.parametrize("changes", VARIANTS.values(), ids=VARIANTS)
+def test_only_the_geometry_of_a_collada_file_counts(tmp_path, changes):
+    text = TRIANGLE_DAE
+    for part, instead in changes.items():
+        assert text.count(part) == 1
+        text = text.replace(part, instead)
+    (tmp_path / "t.dae").write_text(text)
     assert only_obstacle(mesh_world(tmp_path, "t.dae")).geometry.corners.tolist() == [[[0, 3, 0], [1, 3, 0], [0, 3, 2]]]

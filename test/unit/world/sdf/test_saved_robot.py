@@ -4,7 +4,7 @@ import pytest
 from sdf_files import BOX, sdf_file, world_file
 from support import model_named
 
-from aro_robocop_goto_as.raycast.free_places import free_place
+from aro_robocop_goto_as.floor_plan.free_places import free_place
 from aro_robocop_goto_as.world.load import load_world
 
 START = ", and a robot starts at its pose if there is room"

@@ -1,22 +1,22 @@
 """Writes what users read about parameters from their declarations: config/*.yaml, and tables in docs/*.md.
 
-    ./robocop shell python3 -m aro_robocop_goto_as.param_docs
+    ./robocop shell python3 test/unit/param_docs.py
 
-writes them all; test/unit/test_params.py says which ones are out of date.
+writes them all; test_params.py says which ones are out of date.
 """
 
-import os
 import re
 from dataclasses import Field, fields
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Type, cast
 
-from .goto.params import GotoParams
-from .param_loading import MAX_POSITIVE, MIN_POSITIVE, declared
-from .ros.client.params import BridgeParams
-from .simulation.params import SimParams
-from .web.params import WebParams
+from aro_robocop_goto_as.goto.params import GotoParams
+from aro_robocop_goto_as.param_loading import MAX_POSITIVE, MIN_POSITIVE, declared
+from aro_robocop_goto_as.ros.client.params import BridgeParams
+from aro_robocop_goto_as.simulation.params import SimParams
+from aro_robocop_goto_as.web.params import WebParams
 
+CHECKOUT = Path(__file__).resolve().parents[2]
 COLUMN = 28  # of a comment in a YAML file, if the value is not longer
 UNIT = re.compile(r"\[(.*?)\] ?(.*)")
 HEADER = """\
@@ -31,7 +31,7 @@ PRECEDENCE = """\
 """
 
 
-class Documented(NamedTuple):
+class NodeParams(NamedTuple):
     """A node's parameters, the page with their table, their YAML file and the launch argument that replaces it."""
 
     node: str
@@ -42,14 +42,14 @@ class Documented(NamedTuple):
 
 
 NODES = (
-    Documented("robocop_sim", SimParams, "docs/interfaces.md", "config/sim.yaml", "config"),
-    Documented("robocop_goto_as", GotoParams, "docs/interfaces.md", "config/goto_as.yaml", "goto_config"),
-    Documented("robocop_rviz_goto_ac", BridgeParams, "docs/interfaces.md", "config/rviz_goto_ac.yaml", "bridge_config"),
-    Documented("robocop_web", WebParams, "docs/web.md"),
+    NodeParams("robocop_sim", SimParams, "docs/interfaces.md", "config/sim.yaml", "config"),
+    NodeParams("robocop_goto_as", GotoParams, "docs/interfaces.md", "config/goto_as.yaml", "goto_config"),
+    NodeParams("robocop_rviz_goto_ac", BridgeParams, "docs/interfaces.md", "config/rviz_goto_ac.yaml", "bridge_config"),
+    NodeParams("robocop_web", WebParams, "docs/web.md"),
 )
 
 
-def yaml_of(node: Documented) -> str:
+def yaml_of(node: NodeParams) -> str:
     """The YAML file of a node: each parameter's default as a comment, with its meaning."""
     text = HEADER.format(node.node, node.argument) + PRECEDENCE
     for title, cls in _groups(node.params):
@@ -59,7 +59,7 @@ def yaml_of(node: Documented) -> str:
     return text
 
 
-def table_of(node: Documented) -> str:
+def table_of(node: NodeParams) -> str:
     """The Markdown table of a node's parameters: default, unit and range, or the meaning where no YAML file has it."""
     heads = ["parameter", "default", "unit", "range"] if node.yaml else ["argument", "default", "unit", "meaning"]
     rows = [heads, ["---"] * len(heads)]
@@ -100,13 +100,13 @@ def range_of(spec: "Field[Any]") -> str:
     return f"{least} to {most}" if most else least if low == MIN_POSITIVE else f"from {least}"
 
 
-def documents(root: Path) -> Dict[Path, str]:
-    """What each file below `root` that documents parameters has to contain."""
+def documents() -> Dict[Path, str]:
+    """What each file that documents parameters has to contain."""
     found: Dict[Path, str] = {}
     for node in NODES:
         if node.yaml:
-            found[root / node.yaml] = yaml_of(node)
-        page = root / node.page
+            found[CHECKOUT / node.yaml] = yaml_of(node)
+        page = CHECKOUT / node.page
         begin, end = f"<!-- parameters of {node.node}, by param_docs.py -->\n", "\n<!-- end -->"
         before, _, rest = found.get(page, page.read_text(encoding="utf-8")).partition(begin)
         found[page] = before + begin + table_of(node) + end + rest.partition(end)[2]
@@ -121,11 +121,6 @@ def _groups(cls: Type[Any]) -> List[Any]:
     return [(title or (one.__doc__ or "").strip(), part) for one in inner for title, part in _groups(one)]
 
 
-def main() -> None:
-    """Write the files below ROBOCOP_SHARE, the checkout."""
-    for path, text in documents(Path(os.environ["ROBOCOP_SHARE"])).items():
-        path.write_text(text, encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    for path, text in documents().items():
+        path.write_text(text, encoding="utf-8")

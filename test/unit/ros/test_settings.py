@@ -1,23 +1,21 @@
 """What ./robocop says about the settings of ROS before it starts anything."""
 
 import pytest
-from probes.test_master import ros_master, served
+from ros.test_master import ros_master
 
-from aro_robocop_goto_as.probes import settings
+from aro_robocop_goto_as.ros import graph, settings
 
 REMOVED = "For the lab on this machine: unset "
 
 
 @pytest.fixture(autouse=True)
-def of_a_fresh_terminal(monkeypatch, tmp_path):
-    for name in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROS_LOG_DIR", "ROBOCOP_COMMAND"):
+def of_a_fresh_terminal(monkeypatch):
+    for name in ("ROS_MASTER_URI", "ROS_HOSTNAME", "ROS_IP", "ROBOCOP_COMMAND"):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setenv("ROS_HOME", str(tmp_path / "not" / "yet"))
 
 
-def test_nothing_is_wrong_where_nothing_is_set(tmp_path):
+def test_nothing_is_wrong_where_nothing_is_set():
     assert settings.problem() == ""
-    assert not (tmp_path / "not").exists(), "it creates nothing"
 
 
 @pytest.mark.parametrize(
@@ -40,7 +38,7 @@ def test_an_address_that_no_master_can_have_is_refused(monkeypatch, uri):
     ],
 )
 def test_what_was_set_for_another_network_is_named_with_the_line_that_removes_it(monkeypatch, variables, unset):
-    monkeypatch.setattr(settings.master, "TIMEOUT", 0.3)
+    monkeypatch.setattr(graph, "TIMEOUT", 0.3)
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
     assert REMOVED + unset in settings.problem()
@@ -67,26 +65,3 @@ def test_a_master_of_another_machine_is_used_by_nodes_that_it_can_reach(monkeypa
         assert settings.problem().startswith(
             "ROS_HOSTNAME=localhost can't be reached by 127.0.0.1, where ROS_MASTER_URI"
         )
-
-
-def test_no_simulator_is_started_beside_a_real_robot(on_another_machine):
-    with served(getPid=lambda caller: [1, "", 7]) as node:
-        answers = {
-            "getPid": lambda caller: [1, "", 1],
-            "getSystemState": lambda caller: [1, "", [[["/odom", ["/turtlebot3_core"]]], [], []]],
-            "lookupNode": lambda caller, name: [1, "", node],
-        }
-        with served(**answers) as uri:
-            on_another_machine(uri)
-            assert settings.problem() == ""
-            refused = settings.problem(starts_simulator=True)
-            assert refused.startswith(f"/odom is published at {uri} by /turtlebot3_core, as of a real robot")
-
-
-@pytest.mark.parametrize("name", ["ROS_HOME", "ROS_LOG_DIR"])
-def test_a_folder_that_takes_no_logs_is_named_with_its_variable(monkeypatch, tmp_path, name):
-    monkeypatch.setenv(name, "/proc/nowhere")
-    assert settings.problem().startswith(f"the folder of ROS' logs, {name}=/proc/nowhere, can't be written (")
-    (tmp_path / "file").touch()
-    monkeypatch.setenv(name, str(tmp_path / "file"))
-    assert "(Not a directory); set ROS_HOME to one that can" in settings.problem()

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from aro_robocop_goto_as.process import child
+from robocop_hosting import child
 
 DEADLINE = 30.0  # [s, wall]
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from support import world_named
 
+from aro_robocop_goto_as.floor_plan.occupancy import FREE, OCCUPIED, UNKNOWN, occupancy_of
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
 from aro_robocop_goto_as.raycast.beams import Beams
 from aro_robocop_goto_as.raycast.cross_section import CrossSection
-from aro_robocop_goto_as.raycast.occupancy import FREE, OCCUPIED, UNKNOWN, occupancy_of
 from aro_robocop_goto_as.shapes import Box
 from aro_robocop_goto_as.world.model import Obstacle, World
 

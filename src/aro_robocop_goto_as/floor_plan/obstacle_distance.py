@@ -6,24 +6,14 @@ from typing import NamedTuple, Tuple
 
 import numpy as np
 
-from ..robot.model import RobotModel
+from ..raycast.cross_section import NO_CIRCLES, NO_SEGMENTS, outline
 from ..shapes import Mesh, Plane
 from ..world.model import World
-from .cross_section import NO_CIRCLES, NO_SEGMENTS, outline
 
-MIN_HEIGHT = 0.02  # [m] above the floor, where a TurtleBot's bottom plate is: the lowest cross-section
-MAX_SPACING = 0.09  # [m] between cross-sections, from there up to the lidar
 REACH = 0.5  # [m] only segments within this distance along y are searched at first, and all only if none is nearer
 
 
-def body_heights(model: RobotModel) -> Tuple[float, ...]:
-    """The heights [m] of the cross-sections that a robot's body is compared with; three for a Burger."""
-    top = model.height_of(model.base_from_scan)
-    count = 1 + max(1, math.ceil((top - MIN_HEIGHT) / MAX_SPACING))
-    return tuple(np.linspace(MIN_HEIGHT, top, count).tolist())
-
-
-class Nearest(NamedTuple):
+class NearestObstacle(NamedTuple):
     """The obstacle nearest to a point: its distance [m], 0 within it, and its name; +inf and empty for none."""
 
     distance: float
@@ -50,17 +40,17 @@ class ObstacleDistance:
         sizes = [len(part[kind]) for kind in (0, 1) for part in outlines]  # of the segments, then of the circles
         self._owners = np.repeat(2 * list(range(len(outlines))), np.array(sizes, dtype=int))
 
-    def nearest(self, x: float, y: float) -> Nearest:
+    def nearest(self, x: float, y: float) -> NearestObstacle:
         """The obstacle nearest to a point [m] in the world."""
         near = np.flatnonzero((self._low <= y + REACH) & (self._high >= y - REACH))
         found = self._nearest(x, y, near)
         return found if found.distance <= REACH else self._nearest(x, y, np.arange(len(self._start)))
 
-    def _nearest(self, x: float, y: float, rows: np.ndarray) -> Nearest:
+    def _nearest(self, x: float, y: float, rows: np.ndarray) -> NearestObstacle:
         """The nearest of all circles and of the segments in some rows, which include all segments that cross this y."""
         owners = np.concatenate([self._owners[rows], self._owners[len(self._start) :]])
         if not len(owners):
-            return Nearest(math.inf, "")
+            return NearestObstacle(math.inf, "")
         from_start, along = np.array([x, y]) - self._start[rows], self._along[rows]
         share = np.clip((from_start * along).sum(axis=1) / self._squares[rows], 0.0, 1.0)
         gaps = np.hypot(*(from_start - share[:, None] * along).T)
@@ -68,7 +58,7 @@ class ObstacleDistance:
         distances = np.maximum(np.concatenate([gaps, rounds]), 0.0)
         distances[self._around(from_start, along, owners[: len(rows)])[owners]] = 0.0
         best = int(distances.argmin())
-        return Nearest(float(distances[best]), self._names[owners[best]])
+        return NearestObstacle(float(distances[best]), self._names[owners[best]])
 
     def _around(self, from_start: np.ndarray, along: np.ndarray, owners: np.ndarray) -> np.ndarray:
         """The solid outlines that contain a point: a ray from the point along x crosses them an odd number of times.

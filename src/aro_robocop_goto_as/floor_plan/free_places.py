@@ -8,11 +8,11 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..geometry import Pose2D, compose
+from ..raycast.beams import Beams
+from ..raycast.cross_section import CrossSection
 from ..robot.model import RobotModel
 from ..world.model import World
-from .beams import Beams
-from .cross_section import CrossSection
-from .obstacle_distance import ObstacleDistance, body_heights
+from .obstacle_distance import ObstacleDistance
 
 HEIGHT = 0.1  # [m] of the cross-section
 SPACING = 0.5  # [m] of the grid
@@ -32,7 +32,7 @@ class _Room:
     def __init__(self, world: World, model: RobotModel) -> None:
         self.min_distance = model.figures.footprint_radius + MIN_MARGIN
         self.world = world
-        self._distance = ObstacleDistance(world, body_heights(model))
+        self._distance = ObstacleDistance(world, model.body_heights())
 
     def at(self, x: float, y: float) -> float:
         """The distance [m] from a point to the nearest obstacle; -inf where a robot may not start."""
@@ -45,7 +45,7 @@ def occupant(world: World, pose: Pose2D, model: RobotModel) -> str:
     """The obstacle, or unknown cell of a map, that takes the room at a pose, in words that follow "is"."""
     if world.occupancy is not None and not world.occupancy.is_known(pose.x, pose.y):
         return "unknown in the map"
-    return f"occupied by '{ObstacleDistance(world, body_heights(model)).nearest(pose.x, pose.y).name}'"
+    return f"occupied by '{ObstacleDistance(world, model.body_heights()).nearest(pose.x, pose.y).name}'"
 
 
 def free_place(world: World, around: Pose2D, model: RobotModel) -> Pose2D:

@@ -9,8 +9,8 @@ from map_files import room, write_map
 from support import analytic_distances, model_named, world_named
 
 from aro_robocop_goto_as.errors import ParameterError
+from aro_robocop_goto_as.floor_plan.free_places import free_place, occupant
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
-from aro_robocop_goto_as.raycast.free_places import free_place, occupant
 from aro_robocop_goto_as.shapes import Box, Cylinder
 from aro_robocop_goto_as.simulation.factory import robots_from
 from aro_robocop_goto_as.simulation.params import SimParams

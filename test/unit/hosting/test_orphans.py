@@ -9,7 +9,7 @@ DEADLINE = 120.0  # [s, wall]
 # Every descendant holds the pipe open, so it reads as ended once none is left.
 ENDED = """
 import os, subprocess
-from aro_robocop_goto_as.process import orphans
+from robocop_hosting import orphans
 orphans.adopt_orphans()
 ended, alive = os.pipe()
 subprocess.Popen(["sh", "-c", {family!r}], pass_fds=[alive], env={{"PATH": os.environ["PATH"], "SLEEP": "sleep 600"}})
@@ -37,7 +37,7 @@ def test_no_descendant_survives(family):
 def test_adopted_child_that_has_ended_is_let_go_of():
     code = """
 import psutil, subprocess, time
-from aro_robocop_goto_as.process import orphans
+from robocop_hosting import orphans
 orphans.adopt_orphans()
 own = subprocess.Popen(["true"])
 subprocess.run(["sh", "-c", "sleep 0 & exit"])

@@ -1,11 +1,11 @@
-/* Segments in square tiles, row by row; mirrored by GridStruct in caster_library.py. */
-#ifndef ARO_GRID_H
-#define ARO_GRID_H
+/* Segments in square tiles, row by row. */
+#ifndef ARO_TILES_H
+#define ARO_TILES_H
 
 #include <stdint.h>
 
 /* Tile t lists the segments members[starts[t]] to members[starts[t + 1] - 1]. */
-struct grid {
+struct tiles {
     double x, y, side; /* [m] lower left corner, side of a tile */
     int64_t columns, rows;
     const int32_t *starts, *members;

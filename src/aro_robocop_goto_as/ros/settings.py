@@ -1,34 +1,25 @@
-"""Whether a ROS system can run with the master, addresses and log folder that the environment names."""
+"""Whether a ROS system can run with the master and addresses that the environment names."""
 
 import contextlib
 import os
 import socket
-import tempfile
 from typing import List, Tuple
 from urllib.parse import urlsplit
 
+import rosgraph
+
 from ..errors import MasterError
 from ..names import COMMAND_VARIABLE
-from . import master
+from . import graph
 
 MASTER = "ROS_MASTER_URI"
-LOG_FOLDERS = ("ROS_LOG_DIR", "ROS_HOME")  # ROS takes the first one that is set
-OWN_NAMES = (
-    "ROS_HOSTNAME",
-    "ROS_IP",
-)  # the address of this machine for other nodes; ROS takes the first one that is set
+# The address of this machine for other nodes; ROS takes the first one that is set.
+OWN_NAMES = ("ROS_HOSTNAME", "ROS_IP")
 
 
-def problem(starts_simulator: bool = False) -> str:
-    """Why no ROS system can be started or used with these settings, and what to do; empty if one can.
-
-    starts_simulator: whether the caller would start one, which must not publish beside a robot of another machine.
-    """
-    return _network_problem(starts_simulator) or _log_problem()
-
-
-def _network_problem(starts_simulator: bool) -> str:
-    uri = master.master_uri()
+def problem() -> str:
+    """Why no ROS system can be started or used with these settings, and what to do; empty if one can."""
+    uri = rosgraph.get_master_uri()
     try:
         host = urlsplit(uri).hostname if urlsplit(uri).port and uri.startswith("http") else None
     except ValueError:  # no such port
@@ -39,13 +30,8 @@ def _network_problem(starts_simulator: bool) -> str:
     foreign = [name for name, value in named if not is_own(value)]
     if not is_own(host):
         with_master = _without([MASTER, *foreign])
-        if not _answers(uri):
+        if not _answers():
             return f"no ROS master answers at {uri}, which is another machine or an unknown name. {with_master}"
-        robot = master.publishers(uri, "odom") if starts_simulator else {}
-        if robot:
-            topic, nodes = next(iter(robot.items()))
-            found = f"{topic} is published at {uri} by {nodes[0]}, as of a real robot"
-            return f"{found}, which a simulator would disturb. {with_master}"
         if named and is_loopback(named[0][1]):
             own = "=".join(named[0])
             return f"{own} can't be reached by {host}, where {MASTER} is: set this machine's address in that network"
@@ -64,23 +50,9 @@ def _without(names: List[str]) -> str:
     return f"For the lab on this machine: unset {' '.join(names)} (a line in ~/.bashrc may set it again)"
 
 
-def _log_problem() -> str:
-    """Why ROS can't write its logs; nothing is created here, so the nearest folder that exists is tried."""
-    chosen = next((name for name in LOG_FOLDERS if os.environ.get(name)), "")
-    wanted = tried = os.environ.get(chosen) or os.path.expanduser("~/.ros")
-    while not os.path.exists(tried):
-        tried = os.path.dirname(os.path.abspath(tried))
-    try:
-        tempfile.TemporaryFile(dir=tried).close()
-    except OSError as error:
-        remedy = f"set {LOG_FOLDERS[1]} to one that can"
-        return f"the folder of ROS' logs, {chosen}={wanted}, can't be written ({error.strerror}); {remedy}"
-    return ""
-
-
-def _answers(uri: str) -> bool:
+def _answers() -> bool:
     with contextlib.suppress(MasterError):
-        return master.master_answers(uri)
+        return graph.master_answers()
     return False
 
 

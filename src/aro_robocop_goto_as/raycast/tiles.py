@@ -1,16 +1,17 @@
-"""A grid of square tiles that finds the segments near a point."""
+"""Square tiles that find the segments near a point."""
 
 import math
 
 import numpy as np
 
-from ..compiled import address
-from .caster_library import GridStruct
+from ..compiled import address, structure
 
 TILE = 1.0  # [m] side length, larger in worlds of more than MAX_TILES
 MAX_TILES = 1 << 20
 MAX_TILES_OF_SEGMENT = 4096  # that one segment is listed in; a longer one counts as near everywhere
 PAD = 1e-3  # [m] around each segment: rounding errors never make a beam hit it outside its tiles
+
+_Tiles = structure("raycast/tiles.h", "tiles")
 
 
 class Tiles:
@@ -39,7 +40,7 @@ class Tiles:
         self._starts = np.concatenate([[0], np.cumsum(per_tile)]).astype(int32)
         self._tile_marks = np.zeros(tiles, np.int64)
         self.segment_marks = np.zeros(len(segments), np.int64)  # struct.mark of the last scan that compared the segment
-        self.struct = GridStruct(  # created only once: it holds the mark counter
+        self.struct = _Tiles(  # created only once: it holds the mark counter
             *self._origin.tolist(),
             self._side,
             self._columns,

@@ -31,10 +31,10 @@ def circles_at(model: RobotModel, height: float) -> np.ndarray:
     return np.concatenate(circles)
 
 
-class Sections:
-    """The world's cross-sections, one for each height at which robots have a beam sensor.
+class BeamScenes:
+    """The scene of each kind of beam sensor, made of the world's cross-sections at the sensors' heights.
 
-    Beams are level, in the plane that TF describes: at their sensor's height on an upright robot.
+    Beams are level, at their sensor's height on an upright robot, as in TF.
     """
 
     def __init__(self, models: Sequence[RobotModel], world: World, footprints: np.ndarray) -> None:

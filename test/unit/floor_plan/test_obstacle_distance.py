@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from support import analytic_distances, model_named, world_named
 
+from aro_robocop_goto_as.floor_plan.obstacle_distance import ObstacleDistance
 from aro_robocop_goto_as.geometry import Pose2D, Pose3D
-from aro_robocop_goto_as.raycast.obstacle_distance import MAX_SPACING, MIN_HEIGHT, ObstacleDistance, body_heights
+from aro_robocop_goto_as.robot.model import MAX_SPACING, MIN_HEIGHT
 from aro_robocop_goto_as.shapes import Box, Cylinder, Mesh, Plane, Sphere, Walls
 from aro_robocop_goto_as.world.model import Obstacle, World
 
@@ -23,7 +24,7 @@ def _nearest(geometry, pose, x, y):
 
 def test_cross_sections_of_a_body_reach_from_its_bottom_to_its_scanner_without_a_gap():
     for model in map(model_named, ("burger", "turtlebot2")):
-        heights = body_heights(model)
+        heights = model.body_heights()
         assert (heights[0], heights[-1]) == pytest.approx((MIN_HEIGHT, model.height_of(model.base_from_scan)))
         assert max(np.diff(heights)) <= MAX_SPACING
 
