@@ -114,19 +114,6 @@ WRONG = (
             "            lock.acquire()\n            lock.acquire()\n",
         ),
     ),
-    Wrong(
-        "result_of_the_older_goal_is_late",
-        "cancel",
-        "is noticed at once, but the older goal's result comes 6.1 s later",
-        (
-            (
-                "                handle.set_canceled(GoToPositionResult(False, 'preempted'))\n",
-                "                result = [GoToPositionResult(False, 'preempted')]\n"
-                "                threading.Timer(6.0, handle.set_canceled, result).start()\n",
-            ),
-        ),
-        "right/action_server_subclass.py.in",
-    ),
     _server("slow_loop", "feedback_rate", "loop's rate is not 10 Hz", ("rospy.Rate(10)", "rospy.Rate(1)"), alone=True),
     _server("no_init_node", "action_server", "init_node", ("    rospy.init_node('aro_robocop_goto_as_node')\n", "")),
     _server(
