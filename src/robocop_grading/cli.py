@@ -93,11 +93,10 @@ def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[
     return str(folder / given.name), unpacked.notes
 
 
-def report_folder(reports: Path, path: str, is_whole: bool) -> Path:
+def report_folder(reports: Path, path: str) -> Path:
     """The folder with the path of the submission as it was given: names of files alone are often the same."""
     parts = [part for part in Path(os.path.normpath(path)).parts if part not in (os.sep, "//", os.pardir)]
-    folder = reports.joinpath(*(parts or [Path(os.path.realpath(path)).name]))
-    return folder if is_whole else folder.with_name(f"{folder.name}-only")
+    return reports.joinpath(*(parts or [Path(os.path.realpath(path)).name]))
 
 
 def arguments() -> argparse.Namespace:
@@ -120,7 +119,7 @@ def _plan(args: argparse.Namespace, share: Path) -> Plan:
 
 def _kept_traceback(args: argparse.Namespace) -> Path:
     """The path of a file in the report's folder, to which the traceback of the present exception is written."""
-    folder = Path(args.report or report_folder(places()[0] / "reports", args.path, not args.only))
+    folder = Path(args.report or report_folder(places()[0] / "reports", args.path))
     return faults.keep([traceback.format_exc()], make_report_folder(folder, REPORT_STAMP))
 
 
@@ -144,8 +143,7 @@ def main() -> None:
             submission = replace(submission, notes=[*submission.notes, *notes])
             if not any(plan.examines(script.part) for script in submission.scripts):
                 raise GradingSetupError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
-            usual = report_folder(state / "reports", args.path, plan.is_whole)
-            folder = given or make_report_folder(usual, REPORT_STAMP)
+            folder = given or make_report_folder(report_folder(state / "reports", args.path), REPORT_STAMP)
             on_progress = progress(plan, [script.part for script in submission.scripts])
             runner = Runner(plan, state, sandbox, on_progress)
             grade = grade_submission(runner, submission, folder, all_plots=args.all_plots)
