@@ -47,17 +47,10 @@ def progress(plan: Plan, parts: Sequence[str]) -> Callable[[str, str], None]:
 
     def begin(part: str, scenario: str) -> None:
         reraise_if_interrupted()
-        _show(f"{order.index((part, scenario)) + 1}/{len(order)} {part}: {scenario}")
+        number = order.index((part, scenario)) + 1
+        print(f"{number}/{len(order)} {part}: {scenario}", file=sys.stderr, flush=True)
 
     return begin
-
-
-def _show(text: str) -> None:
-    """Show progress; on a terminal, in place of the previous progress."""
-    if sys.stderr.isatty():
-        print(f"\r\033[K{text} ...", end="", file=sys.stderr, flush=True)
-    else:
-        print(text, file=sys.stderr, flush=True)
 
 
 def in_short(grade: Grade) -> List[str]:
@@ -136,8 +129,6 @@ def main() -> None:
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"])
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
         with scratch_folder(), exclusive(folder_in_use):
-            if sys.stderr.isatty():
-                _show("package: build")
             path, notes = unpacked_path(args.path, folder_in_use.with_suffix(".files"), sandbox)
             submission = prepare_submission(path, share, state, state / "grade", sandbox)
             submission = replace(submission, notes=[*submission.notes, *notes])
@@ -162,7 +153,6 @@ def main() -> None:
         with contextlib.suppress(OSError, RobocopError):  # the disk may be full
             print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
         sys.exit(NO_GRADE)
-    print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)
     print("\n".join(in_short(grade)))
     print(printable(f"report: {folder / 'report.html'}"))
     sys.exit(0 if grade.all_right else NOT_EVERYTHING)
