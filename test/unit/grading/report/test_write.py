@@ -42,6 +42,13 @@ def test_scenarios_in_which_every_check_passed_have_plots_only_if_all_are_asked_
     assert written(tmp_path, RIGHT, all_plots=True)[1].count("<svg") == 5
 
 
+@pytest.fixture
+def no_plots(monkeypatch):
+    """Reports without plots, which take seconds."""
+    monkeypatch.setattr(report, "_plot", lambda *_: "")
+
+
+@pytest.mark.usefixtures("no_plots")
 def test_what_follows_from_a_mistake_is_one_line_below_it(tmp_path):
     grade, html = written(tmp_path, STUCK, replace(STUCK, name="odd_scan"))
     (mistake,) = [it for it in grade.mistakes if "odd_scans" in {check.name for check in it.followers}]
@@ -59,6 +66,7 @@ def test_terminal_has_each_mistake_with_its_cost_and_what_was_seen_the_problems_
     assert points == f"anna: {grade.words}"
 
 
+@pytest.mark.usefixtures("no_plots")
 @pytest.mark.parametrize("moves", [False, True])
 def test_command_that_shows_a_scenario_works_from_anywhere_and_names_no_path_of_somebody_else(tmp_path, moves):
     (tmp_path / "server-left.bag").write_bytes(b"")
