@@ -14,7 +14,6 @@ from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 from aro_robocop_goto_as.process.start import typed
 
-from . import file_lock
 from .errors import HostingError
 from .package import LaunchPlan, Package, arguments_of, find_package, read_launch_plan
 from .scratch import scratch_folder
