@@ -34,7 +34,7 @@ From a world file to a scan:
     world.load                    by world.sdf or world.grid_map -> world.model.World
     raycast.cross_section         the world at a sensor's height: segments and circles
     raycast.scenes              + robots and where on them the sensor is -> what its beams can hit
-        raycast.beams             lays this out for caster.c, which caster_library loads: exact distances along beams
+        raycast.beams             lays this out for caster.c, which it loads: exact distances along beams
     sensors.lidar                 noise, range limits -> ranges
 
 Where there is room in that world, and its map: `floor_plan`.

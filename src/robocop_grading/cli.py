@@ -47,17 +47,10 @@ def progress(plan: Plan, parts: Sequence[str]) -> Callable[[str, str], None]:
 
     def begin(part: str, scenario: str) -> None:
         reraise_if_interrupted()
-        _show(f"{order.index((part, scenario)) + 1}/{len(order)} {part}: {scenario}")
+        number = order.index((part, scenario)) + 1
+        print(f"{number}/{len(order)} {part}: {scenario}", file=sys.stderr, flush=True)
 
     return begin
-
-
-def _show(text: str) -> None:
-    """Show progress; on a terminal, in place of the previous progress."""
-    if sys.stderr.isatty():
-        print(f"\r\033[K{text} ...", end="", file=sys.stderr, flush=True)
-    else:
-        print(text, file=sys.stderr, flush=True)
 
 
 def in_short(grade: Grade) -> List[str]:
@@ -93,11 +86,10 @@ def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[
     return str(folder / given.name), unpacked.notes
 
 
-def report_folder(reports: Path, path: str, is_whole: bool) -> Path:
+def report_folder(reports: Path, path: str) -> Path:
     """The folder with the path of the submission as it was given: names of files alone are often the same."""
     parts = [part for part in Path(os.path.normpath(path)).parts if part not in (os.sep, "//", os.pardir)]
-    folder = reports.joinpath(*(parts or [Path(os.path.realpath(path)).name]))
-    return folder if is_whole else folder.with_name(f"{folder.name}-only")
+    return reports.joinpath(*(parts or [Path(os.path.realpath(path)).name]))
 
 
 def arguments() -> argparse.Namespace:
@@ -120,7 +112,7 @@ def _plan(args: argparse.Namespace, share: Path) -> Plan:
 
 def _kept_traceback(args: argparse.Namespace) -> Path:
     """The path of a file in the report's folder, to which the traceback of the present exception is written."""
-    folder = Path(args.report or report_folder(places()[0] / "reports", args.path, not args.only))
+    folder = Path(args.report or report_folder(places()[0] / "reports", args.path))
     return faults.keep([traceback.format_exc()], make_report_folder(folder, REPORT_STAMP))
 
 
@@ -137,15 +129,12 @@ def main() -> None:
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"])
         folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
         with scratch_folder(), exclusive(folder_in_use):
-            if sys.stderr.isatty():
-                _show("package: build")
             path, notes = unpacked_path(args.path, folder_in_use.with_suffix(".files"), sandbox)
             submission = prepare_submission(path, share, state, state / "grade", sandbox)
             submission = replace(submission, notes=[*submission.notes, *notes])
             if not any(plan.examines(script.part) for script in submission.scripts):
                 raise GradingSetupError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
-            usual = report_folder(state / "reports", args.path, plan.is_whole)
-            folder = given or make_report_folder(usual, REPORT_STAMP)
+            folder = given or make_report_folder(report_folder(state / "reports", args.path), REPORT_STAMP)
             on_progress = progress(plan, [script.part for script in submission.scripts])
             runner = Runner(plan, state, sandbox, on_progress)
             grade = grade_submission(runner, submission, folder, all_plots=args.all_plots)
@@ -164,7 +153,6 @@ def main() -> None:
         with contextlib.suppress(OSError, RobocopError):  # the disk may be full
             print(f"its traceback is in {_kept_traceback(args)}", file=sys.stderr)
         sys.exit(NO_GRADE)
-    print("\r\033[K" * sys.stderr.isatty(), end="", file=sys.stderr, flush=True)
     print("\n".join(in_short(grade)))
     print(printable(f"report: {folder / 'report.html'}"))
     sys.exit(0 if grade.all_right else NOT_EVERYTHING)

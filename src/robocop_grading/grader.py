@@ -39,7 +39,7 @@ def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = Fa
             notes += [f"{script.part}: {it}" for it in recorded.told]
             missing += [f"{script.part}: {it}" for it in _missing_modules(recorded.records, script.path)]
         judged = completed(judge.judge(submission.name, plan, records, problems), plan)
-        told = dict.fromkeys([*judged.notes, *notes, *(submission.notes if plan.is_whole else ())])
+        told = dict.fromkeys([*judged.notes, *notes, *submission.notes])
         judged = replace(
             judged, files=tuple(submission.files), problems=(*judged.problems, *missing), notes=tuple(told)
         )

@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import IO, Callable, Dict, Iterator, Mapping, Sequence, Tuple
 
 from aro_robocop_goto_as.errors import InstallationError
-from aro_robocop_goto_as.process import file_lock
 
-from . import child, tree
+from . import child, file_lock, tree
 from .errors import HostingError
 
 Environment = Dict[str, str]

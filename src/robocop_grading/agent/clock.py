@@ -7,10 +7,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 from .scheduler import scheduler
 
-_real = {
-    name: getattr(time, name)
-    for name in "time_ns monotonic_ns sleep localtime gmtime clock_gettime_ns strftime asctime".split()
-}
+_real = {name: getattr(time, name) for name in ("time_ns", "monotonic_ns", "sleep")}
 
 READS, READS_TIME = 100, 0.001  # clock reads of a thread at one simulated time, and its pause [s] after them
 
@@ -48,36 +45,6 @@ def sleep(seconds: float) -> None:
         _real["sleep"](seconds)  # also complains of a negative time
 
 
-def localtime(seconds: Optional[float] = None) -> time.struct_time:
-    return _real["localtime"](now() if seconds is None else seconds)
-
-
-def gmtime(seconds: Optional[float] = None) -> time.struct_time:
-    return _real["gmtime"](now() if seconds is None else seconds)
-
-
-def clock_gettime_ns(clock: int) -> int:
-    if clock == time.CLOCK_REALTIME:
-        return time_ns()
-    return monotonic_ns() if clock == time.CLOCK_MONOTONIC else int(_real["clock_gettime_ns"](clock))
-
-
-def clock_gettime(clock: int) -> float:
-    return clock_gettime_ns(clock) / 1e9
-
-
-def asctime(when: Any = None) -> str:
-    return str(_real["asctime"](localtime() if when is None else when))
-
-
-def ctime(seconds: Optional[float] = None) -> str:
-    return asctime(localtime(seconds))
-
-
-def strftime(form: str, when: Any = None) -> str:
-    return str(_real["strftime"](form, localtime() if when is None else when))
-
-
 class _Kind(type):
     def __instancecheck__(cls, value: object) -> bool:
         return isinstance(value, _datetime)  # also one that C code has made
@@ -109,14 +76,14 @@ def install() -> None:
     import threading
 
     functions: Dict[str, Callable[..., Any]] = {
-        **{"time": now, "time_ns": time_ns, "sleep": sleep, "localtime": localtime, "gmtime": gmtime},
-        **{"monotonic": monotonic, "monotonic_ns": monotonic_ns},
-        **{"clock_gettime": clock_gettime, "clock_gettime_ns": clock_gettime_ns},
-        **{"asctime": asctime, "ctime": ctime, "strftime": strftime},
-        **{"perf_counter": monotonic, "perf_counter_ns": monotonic_ns},
+        "time": now,
+        "time_ns": time_ns,
+        "sleep": sleep,
+        **dict.fromkeys(("monotonic", "perf_counter"), monotonic),
+        **dict.fromkeys(("monotonic_ns", "perf_counter_ns"), monotonic_ns),
     }
     for name, function in functions.items():
-        # As an attribute of a class, which logging makes of localtime, a function would get `self`; this does not.
+        # As an attribute of a class a function would get `self`; this does not.
         setattr(time, name, functools.partial(function))
     dates: Any = datetime
     dates.datetime = SimulatedDatetime

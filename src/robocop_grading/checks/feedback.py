@@ -21,20 +21,15 @@ MAX_WRONG_TIME = 0.25  # [s] messages that are wrong one after the other for so 
 MIN_GOAL_TIME = 2.0  # [s] for which a goal has to be active: what a server does before its loop takes part of it
 STOPS = 0.4  # [s] after a goal's end, in which a timer's last feedback may come
 MAX_LATER = 3  # messages that may come even later
-GROWN = 1.5  # times the rate of the first goal
 NO_FEEDBACK = "No feedback was sent at all: is publish_feedback called in the loop?"
 TOO_OFTEN = (
     "Feedback is sent more often than 10 times a second: is rate.sleep() called in each iteration, that of "
-    "rospy.Rate(10), and is feedback published once in it?"
+    "rospy.Rate(10), is feedback published once in it, and does no timer or thread of an earlier goal go on?"
 )
 NOT_10_HZ = "Feedback is not sent in each iteration, or the loop's rate is not 10 Hz"
 GOES_ON = (
     "Feedback about a goal goes on after its result: does a timer or a thread of the goal go on? Stop it when the goal "
     "ends"
-)
-GROWS = (
-    "The rate of the feedback is right at the first goal and becomes higher with later goals: does a timer or a thread "
-    "of an earlier goal go on? Stop it when its goal ends"
 )
 OLD = (
     "The feedback is old, by up to {:.1f} s: calculate the errors from the newest pose, then publish them, both in the "
@@ -43,18 +38,7 @@ OLD = (
 DIFFERENCE = "the difference of two angles has to be normalized to -pi..pi"
 
 
-def _rate_explained(records: Mapping[str, Record], _names: Sequence[str], failure: Failed) -> Failed:
-    """The failure with its cause if the rate was right at the first goal of all."""
-    goals = sorted(((goal, record) for record in records.values() for goal in record.goals), key=lambda it: it[0].time)
-    rates = [rate for goal, record in goals for rate in [_rate(record, goal)] if rate is not None]
-    if failure.cause == TOO_OFTEN and failure.goal is not None and rates:
-        now = next(_rate(record, goal) for goal, record in goals if goal == failure.goal)
-        grows = now is not None and now > GROWN * rates[0]
-        return replace(failure, cause=GROWS) if grows else failure
-    return failure
-
-
-@check("server", "left right behind far", plot="errors", explain=_rate_explained)
+@check("server", "left right behind far", plot="errors")
 def feedback_rate(record: Record, limits: Limits) -> Verdict:
     """While a goal is active, and not after its end, feedback is published about ten times a second."""
     judged = False

@@ -115,11 +115,9 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
     if len(away) > 0.15 * len(situations) or len(wrong) > 0.5 * len(situations):
         command, angle = (away or wrong)[0]
         wanted = "angular.z above 0" if angle > 0 else "angular.z below 0"
-        goal, turn = "the goal", " for the shorter turn"
-        if abs(angle) > math.pi / 2.0:
-            goal, turn = "a goal that is behind it", ", also for large angles"
         cause = (
-            f"The robot turns away from {goal}: angle_error is {angle:.2f} rad, so angular.z needs the same sign{turn}"
+            f"The robot turns away from the goal: angle_error is {angle:.2f} rad, so angular.z needs the same sign, "
+            "also for large angles"
         )
         return Failed(wanted, f"angular.z {command.w:.2f}", command.time, cause)
     return None

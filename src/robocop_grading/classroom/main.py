@@ -22,6 +22,7 @@ from robocop_hosting.workspace import exclusive, places
 from ..cli import INTERRUPTED, WRONG_USE
 from ..errors import GradingSetupError
 from ..files.exports import class_folder, people, visible
+from ..grades import Grade
 from ..plan import Plan
 from ..plan_file import load
 from ..report.write import make_report_folder
@@ -31,7 +32,7 @@ from ..submission import lab_environment
 from ..texts import printable_lines, shortened
 from .hand_ins import collect
 from .overview import page
-from .results import HAND_IN_STAMP, MAX_TOLD, Results, StoredGrade, write_atomically
+from .results import HAND_IN_STAMP, MAX_TOLD, Results, write_atomically
 from .summary import Summary, pace
 from .table import one_line, table
 from .worker import work
@@ -50,7 +51,7 @@ class Gradebook:
         self.folder, self.plan, self.results = folder, plan, results
         self._people = people(folder)
         self.count = len(hand_ins)
-        self.done: Dict[str, StoredGrade] = {
+        self.done: Dict[str, Grade] = {
             name: results.read(name) for name, digest in hand_ins.items() if results.has(name, digest)
         }
         self.waiting = {name: digest for name, digest in hand_ins.items() if name not in self.done}
@@ -86,7 +87,7 @@ class Gradebook:
         self.waiting.pop(name, None)
         self._ran += result.is_judged
         problems = shortened(f" ({' | '.join(result.problems)})", MAX_TOLD) if result.problems else ""
-        words = f"{result.words if result.is_judged else 'not gradable'}, {result.seconds:.0f} s{problems}"
+        words = f"{result.words if result.is_judged else 'not gradable'}{problems}"
         left = f"; {self.pace}" if self.pace else ""
         return one_line(f"[{len(self.done)}/{self.count}] {name}: {words}{left}")
 

@@ -1,6 +1,5 @@
 """Grades one hand-in of a class and stores its report; run by dask's workers."""
 
-import time
 import traceback
 from dataclasses import replace
 from pathlib import Path
@@ -19,16 +18,13 @@ from ..report.write import write
 from ..runner import Runner
 from ..sandbox.bubblewrap import open_sandbox
 from ..submission import prepare_submission
-from ..texts import shortened
 from .hand_ins import unpacked
 from .results import Results
-
-MAX_PROBLEM = 4_000  # characters
 
 
 def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
     """Grade one hand-in; its mistakes go into its report, and an error that is not its fault is raised."""
-    started, (state, share) = time.monotonic(), places()
+    state, share = places()
     sandbox = open_sandbox(unsafe, [state / "venv", state / "compat"])
     digest, name = "", path.name.encode("utf-8", "replace").decode()
     notes: List[str] = []  # about what is not used of it
@@ -50,6 +46,6 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
             if not isinstance(error, RobocopError):
                 problem = f"could not be graded, see {faults.FILE}: {error!r}"
                 tracebacks = (traceback.format_exc(),)
-            problem = shortened(problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", ""), MAX_PROBLEM)
+            problem = problem.replace(f"{top / 'hand_in'}/", "").replace(f"{top}/", "")
             write(Grade(name, (), (problem,), tuple(notes), tracebacks=tracebacks), plan, {}, report)
-        results.keep(path.name, digest, report, time.monotonic() - started)
+        results.keep(path.name, digest, report)

@@ -26,8 +26,7 @@ REPORTS = Path("/reports")
 def test_report_is_named_after_what_was_given(given, folder, tmp_path, monkeypatch):
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
-    assert cli.report_folder(REPORTS, given, True) == REPORTS / folder
-    assert cli.report_folder(REPORTS, given, False) == REPORTS / f"{folder}-only"
+    assert cli.report_folder(REPORTS, given) == REPORTS / folder
 
 
 def status(error, tmp_path, monkeypatch, capsys, *arguments, path="lab"):

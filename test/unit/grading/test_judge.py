@@ -227,11 +227,3 @@ def test_wrong_feedback_about_a_goal_that_ends_at_once_follows_from_what_an_earl
 def test_missing_feedback_follows_from_the_exception_that_ended_its_timer():
     printed = lines("Exception in thread Thread-6:", NO_NAME[0].text, "TypeError: tell() takes 1 argument")
     assert failures(changed(lines=printed, feedback=())) == {"no_exception": "", "feedback_rate": "no_exception"}
-
-
-def test_rate_that_is_right_at_the_first_goal_and_grows_is_that_of_timers_that_go_on():
-    later = changed(name="far", goals=(replace(GOAL, time=0.0),), feedback=RIGHT.feedback * 5)
-    moved = replace(later, goals=(replace(GOAL, id="h", time=0.1),), results=(), statuses=())
-    fast = replace(moved, feedback=tuple(replace(it, id="h") for it in moved.feedback))
-    assert "right at the first goal and becomes higher" in cause_of("feedback_rate", RIGHT, fast)
-    assert "more often than 10 times" in cause_of("feedback_rate", later)

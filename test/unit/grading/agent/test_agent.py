@@ -93,15 +93,6 @@ def test_datetime_follows_simulated_time_and_is_otherwise_itself(tmp_path):
     assert printed(tmp_path, text)[-2:] == ["[2.5, 2.5, 2.5] True", "True <class 'datetime.datetime'>"]
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["ctime()", "asctime()", "strftime('%c')", "clock_gettime_ns(time.CLOCK_MONOTONIC) // 10**9"],
-)
-def test_clock_that_shows_the_time_as_text_or_by_number_follows_simulated_time(text, tmp_path):
-    before, after = printed(tmp_path, f"print(time.{text})\ntime.sleep(1.0)\nprint(time.{text})")
-    assert before != after
-
-
 def test_lock_refuses_a_negative_timeout_as_pythons_own_does(tmp_path):
     text = "import threading\ntry: threading.Lock().acquire(timeout=-5)\nexcept ValueError: print('refused')"
     assert printed(tmp_path, text) == ["refused"]

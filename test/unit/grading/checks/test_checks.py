@@ -147,6 +147,11 @@ WRONG = [
     ),
     ("action_server", Record("start", "server", servers=("/robovop_goto_as",)), "called robovop_goto_as; the"),
     (
+        "action_server",
+        Record("start", "server", up=False, servers=("/robocop_goto_as",), types=("actionlib/TestAction",)),
+        "The action's type is actionlib/TestAction; the handout's is GoToPositionAction",
+    ),
+    (
         "stops_at_obstacle",
         _aborted(samples=tuple(replace(it, touching=it.time > 10.5) for it in _aborted().samples)),
         "kept moving after the result (ABORTED)",
@@ -267,19 +272,13 @@ def test_old_feedback_is_one_mistake_and_a_wrong_one_does_not_say_when_the_goal_
     assert CHECKS["reaches_goal"](fed_back(position=lambda d: d - 0.1), LIMITS) is PASSED
 
 
-@pytest.mark.parametrize("turning, words", [(True, "when the robot has turned"), (False, "drives on until then")])
-def test_cancel_that_is_noticed_late_is_not_one_that_is_never_noticed(turning, words):
-    samples = tuple(replace(it, v=0.0 if turning else 0.2, w=0.5 if turning else 0.0) for it in RIGHT.samples)
-    cancelled = changed(cancels=(rec.Cancel(5.0, "g"),), samples=samples)
+def test_cancel_that_is_noticed_late_is_not_one_that_is_never_noticed():
+    cancelled = changed(cancels=(rec.Cancel(5.0, "g"),))
     late = replace(cancelled, results=(rec.Result(8.0, "g", rec.PREEMPTED, False, "x"),))
     verdict = CHECKS["cancel"](late, LIMITS)
-    assert isinstance(verdict, Failed) and "noticed only 3.0 s later" in verdict.cause and words in verdict.cause
+    assert isinstance(verdict, Failed) and "noticed only 3.0 s later" in verdict.cause
     never = CHECKS["cancel"](cancelled, LIMITS)
     assert isinstance(never, Failed) and "is not noticed" in never.cause
-    before = tuple(it for it in cancelled.feedback if it.time < 5.3)
-    silent = replace(cancelled, feedback=before, results=(), statuses=RIGHT.statuses[:1])
-    hangs = CHECKS["cancel"](silent, LIMITS)
-    assert isinstance(hangs, Failed) and "neither feedback nor a result" in hangs.cause
 
 
 def test_result_of_a_robot_that_rests_at_the_goal_may_come_a_second_later():

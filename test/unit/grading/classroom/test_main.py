@@ -135,7 +135,7 @@ def test_class_says_how_fast_it_is_and_who_is_not_gradable_and_why(group, monkey
     monkeypatch.setattr(group, "_started", time.monotonic() - 60.0)
     keep(group.results, "carl.zip")
     line = group.add("carl.zip", "")
-    assert line == f"[3/4] carl.zip: {CANCEL:g} of {CANCEL:g} points, 3 s; 1.0 a minute, about 2 min left"
+    assert line == f"[3/4] carl.zip: {CANCEL:g} of {CANCEL:g} points; 1.0 a minute, about 2 min left"
     assert group.add("řehoř", "no grade: the machine had no time") == "řehoř: no grade: the machine had no time"
     lines = group.summary_lines()
     averages = f"mean {CANCEL:.2f}, median {CANCEL:g} of {PLAN.points:g} points"
