@@ -2,12 +2,12 @@
 
 import re
 import shutil
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Mapping, Sequence
 
 from aro_robocop_goto_as.suggestions import did_you_mean
-from robocop_hosting.tree import temporary_folder
 
 from . import judge
 from .grades import Grade, completed
@@ -37,7 +37,7 @@ def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = Fa
     plan = runner.plan
     records: Dict[str, Mapping[str, Record]] = {}
     problems: Dict[str, str] = {}
-    with temporary_folder("robocop-grade-") as work:
+    with tempfile.TemporaryDirectory(prefix="robocop-grade-") as work:
         notes = [] if plan.is_whole else [NOT_WHOLE]
         missing: List[str] = []
         for script in (script for script in submission.scripts if plan.examines(script.part)):
