@@ -34,7 +34,7 @@ From a world file to a scan:
     world.load                    by world.sdf or world.grid_map -> world.model.World
     raycast.cross_section         the world at a sensor's height: segments and circles
     raycast.scenes              + robots and where on them the sensor is -> what its beams can hit
-        raycast.beams             lays this out for caster.c, which caster_library loads: exact distances along beams
+        raycast.beams             lays this out for caster.c, which it loads: exact distances along beams
     sensors.lidar                 noise, range limits -> ranges
 
 Where there is room in that world, and its map: `floor_plan`.
@@ -58,9 +58,8 @@ Only `ros` imports rospy. Each component of the simulator declares its parameter
 `simulation.params` composes the groups. Limits and timeouts are parameters first, so look for them there and in
 `config/` before the code. `robot.fleet` holds the state of all robots as arrays, which the C files work on: where a .c
 and a .py have one name, C computes, and Python holds the figures and calls C. `compiled` loads the libraries that CMake
-builds from these. All readers of user-written files use `reading`. `process` is about operating system processes, and
-`probes` looks at the machine, also before anything is installed. Beside this package, `robocop_hosting` builds and runs
-other people's packages, and `robocop_grading` judges them.
+builds from these. All readers of user-written files use `reading`. `process` is about operating system processes.
+Beside this package, `robocop_hosting` builds and runs other people's packages, and `robocop_grading` judges them.
 """
 
 from pkgutil import extend_path

@@ -127,6 +127,21 @@ class Grade:
         return ", ".join(words) or "nothing was judged"
 
     @property
+    def is_judged(self) -> bool:
+        """Return whether any part of the hand-in was judged; otherwise its problems say why not."""
+        return bool(self.checks)
+
+    def points_of(self, part: str) -> Optional[float]:
+        """Points of the server or the bridge, without extra points; None if that part was not handed in."""
+        checks = [it for it in self.checks if it.part == part and it.outcome is not CheckOutcome.NOT_HANDED_IN]
+        return total(check.points for check in checks if not check.extra) if checks else None
+
+    def outcomes(self, plan: Plan) -> List[str]:
+        """For each check of the plan: its outcome, or nothing if nothing was judged."""
+        known = {check.name: check.outcome.value for check in self.checks}
+        return [known.get(check.name, "") for check in plan.checks]
+
+    @property
     def all_right(self) -> bool:
         """Return whether every check that is not extra passed."""
         return all(check.outcome is CheckOutcome.PASSED for check in self.checks if not check.extra)

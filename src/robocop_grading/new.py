@@ -2,7 +2,6 @@
 
 import argparse
 import random
-import re
 import shlex
 import shutil
 import sys
@@ -16,8 +15,6 @@ from aro_robocop_goto_as.own_path import expect_own
 from aro_robocop_goto_as.process.start import typed
 from robocop_hosting.workspace import places
 
-from .errors import GradingSetupError
-
 SKELETON = Path(__file__).resolve().parent / "skeleton"
 SUFFIX = ".in"  # hides the files from rosrun and roslaunch, which search this whole package
 IMAGE = "@IMAGE@"  # in the files of the folders .NAME, which are for GitHub: stands for the container image
@@ -26,14 +23,11 @@ GRADESCOPE_FOLDER = ".gradescope"  # the folder of what is for Gradescope
 # What an installation of this package needs, besides README, docs and tests.
 INSTALLED = "action cfg compat config install launch msg rviz scripts src srv urdf worlds".split()
 INSTALLED += "CMakeLists.txt LICENSE package.xml pyproject.toml robocop setup.py test/ros".split()
-IMAGE_NAME = r"[a-z0-9][A-Za-z0-9._/:@-]*"
 
 
 def make(folder: Path, image: Optional[str] = None) -> None:
     """Copy the skeleton to `folder`, which is new or empty, with GitHub's files if a container image is given."""
     expect_own(folder)
-    if image is not None and not re.fullmatch(IMAGE_NAME, image):
-        raise GradingSetupError(f"{image!r} is not the name of a container image: expected NAME or SERVER/NAME:TAG")
     for path in sorted(SKELETON.rglob(f"*{SUFFIX}")):
         relative = path.relative_to(SKELETON).with_suffix("")
         target = folder / relative

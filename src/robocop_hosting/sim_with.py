@@ -1,7 +1,6 @@
 """robocop sim --with PATH: builds a package in a workspace of its own and runs it against this simulator."""
 
 import argparse
-import fcntl
 import os
 import re
 import shlex
@@ -12,7 +11,6 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from xml.sax.saxutils import quoteattr
 
 from aro_robocop_goto_as.errors import RobocopError
-from aro_robocop_goto_as.process import file_lock
 from aro_robocop_goto_as.process.signals import ending_signals, ignore_all, interrupt_on_signal
 from aro_robocop_goto_as.process.start import typed
 
@@ -20,7 +18,7 @@ from .errors import HostingError
 from .package import LaunchPlan, Package, arguments_of, find_package, read_launch_plan
 from .scratch import scratch_folder
 from .scripts import FIRST_LINE, NODE_NAMES, interpreter, start_problems
-from .workspace import Environment, build_in_place, compat_environment, places, run_plain, workspace_name
+from .workspace import Environment, build_in_place, compat_environment, exclusive, places, workspace_name
 
 LACKING = re.compile("can't be built|not found|No such file")
 ABOUT_LACKING = (
@@ -36,36 +34,18 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
 
     HostingError if roslaunch can't start one of its scripts, with the reason.
     """
-    folder = lock_free_folder(state / "with", workspace_name(package.path))
+    folder = state / "with" / workspace_name(package.path)
     words = [f"{name}:={value}" for name, value in arguments.items()]
     try:
-        environment = build_in_place(package.sources, folder, compat_environment(share, state))
-        found = read_launch_plan(package, folder, environment, run_plain, words)
+        with exclusive(folder):
+            environment = build_in_place(package.sources, folder, compat_environment(share, state))
+            found = read_launch_plan(package, folder, environment, words)
     except HostingError as error:
         raise HostingError(f"{error}\n{ABOUT_LACKING}" if LACKING.search(str(error)) else str(error)) from error
     for choice in found.choices.values():
         if not choice.is_installed and (choice.node is not None or package.launch_file is None):
             expect_startable(choice.path)
     return folder, {**environment, "ROBOCOP_WS": os.environ["ROBOCOP_WS"]}, found
-
-
-def lock_free_folder(parent: Path, name: str) -> Path:
-    """The first of NAME, NAME-1, ... in which no other `sim --with` builds or runs; this process keeps its lock."""
-    parent.mkdir(parents=True, exist_ok=True)
-    folder, number = parent / name, 0
-    while not _try_lock(folder):
-        number += 1
-        folder = parent / f"{name}-{number}"
-    return folder
-
-
-def _try_lock(folder: Path) -> bool:
-    """Try to lock a folder, by a file beside it, until this process ends; return whether that succeeded."""
-    lock = os.open(folder.with_name(f"{folder.name}.lock"), os.O_CREAT | os.O_WRONLY)
-    is_free = file_lock.lock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    if not is_free:
-        os.close(lock)
-    return is_free
 
 
 def expect_startable(script: Path) -> None:

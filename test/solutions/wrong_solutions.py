@@ -65,13 +65,6 @@ DRIVE_BEGIN = "    def drive(self, v, w):\n"
 
 WRONG = (
     _server("never_started", "action_server", "not started", ("        self.server.start()\n", "")),
-    _server(
-        "other_type",
-        "action_server",
-        "type",
-        ("import GoToPositionAction,", "import GoToPositionAction as _,"),
-        ("import rospy\n", "import rospy\nfrom actionlib.msg import TestAction as GoToPositionAction\n"),
-    ),
     _server("crashes_at_start", "action_server", "ended while starting", ("self.count = 0", "self.count = undefined")),
     _server(
         "success_at_once", "reaches_goal", "before position_error is below 0.1 m", (REACHED, "if True:"), alone=True
@@ -299,17 +292,6 @@ WRONG = (
         "no_exception",
         "field result.success is not a bool (solution.py, line",
         ("result.success = success", "result.success = str(success)"),
-        alone=True,
-    ),
-    _bridge(
-        "bridge_with_a_new_client_for_each_click",
-        "cancels_older",
-        "cancel_goal() on the client that has sent the older one",
-        (
-            "        if self.sent:\n",
-            "        self.client = actionlib.SimpleActionClient('robocop_goto_as', GoToPositionAction)\n"
-            "        self.client.wait_for_server()\n        if self.sent:\n",
-        ),
         alone=True,
     ),
     _server(

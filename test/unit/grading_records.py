@@ -9,7 +9,6 @@ from support import ROOT
 
 from robocop_grading import record as rec
 from robocop_grading.checks import Failed
-from robocop_grading.classroom.results import StoredGrade
 from robocop_grading.grades import CheckOutcome, CheckResult, Grade
 from robocop_grading.handout import Limits
 from robocop_grading.judge import judge
@@ -92,12 +91,12 @@ def keep_grade(results, grade, digest=None):
     """Store the report of a grade."""
     with tempfile.TemporaryDirectory() as folder:
         write(grade, PLAN, {}, Path(folder))
-        results.keep(grade.name, f"digest of {grade.name}" if digest is None else digest, Path(folder), 3.0)
+        results.keep(grade.name, f"digest of {grade.name}" if digest is None else digest, Path(folder))
 
 
 # A class: Anna is judged, Ben handed in no bridge, nothing of Carl is gradable.
 GROUP = (
-    StoredGrade(
+    Grade(
         "=anna",
         (
             judged("cancel", "server", 0.0, "<cause> at 1.5"),
@@ -105,6 +104,6 @@ GROUP = (
             judged("goal_frame", "bridge", 1.0, extra=True),
         ),
     ),
-    StoredGrade("ben", (judged("cancel", "server", 0.0, "<cause> at -3"),), ("=cmd",)),
-    StoredGrade("carl", (), ("nothing to grade",)),
+    Grade("ben", (judged("cancel", "server", 0.0, "<cause> at -3"),), ("=cmd",)),
+    Grade("carl", (), ("nothing to grade",)),
 )

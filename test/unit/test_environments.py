@@ -23,7 +23,6 @@ ENVIRONMENTS = {
     "a real robot's master": ({"ROS_MASTER_URI": "http://192.0.2.7:9"}, "unset ROS_MASTER_URI"),
     "no master's address": ({"ROS_MASTER_URI": "foo"}, "unset ROS_MASTER_URI"),
     "an address in a robot's network": ({"ROS_IP": "192.0.2.20"}, "ROS_IP "),
-    "logs that can't be written": ({"ROS_HOME": "/proc/nowhere"}, "ROS_HOME=/proc/nowhere, can't be written"),
 }
 HARMLESS = ("another locale", "no HOME", "pyenv", "a display that does not answer", "a namespace")
 OTHERS = tuple(name for name in ENVIRONMENTS if name not in HARMLESS)
@@ -77,15 +76,16 @@ def explained(text, names):
 def test_run_and_goto_start_the_lab_or_say_what_is_wrong_and_grade_always_starts(calls, names):
     faults = [name for name in names if ENVIRONMENTS[name][1] and name != "a namespace"]
     for words, started in (
-        (("run", "rviz:=false"), "robocop_goto_as.launch rviz:=false\n"),
-        (("goto", "0.3", "0"), "/robocop_goto.py 0.3 0\n"),
-        (("grade", "hand_in"), "/robocop_grade.py hand_in\n"),
+        (("run", "rviz:=false"), "robocop_goto_as.launch rviz:=false"),
+        (("goto", "0.3", "0"), "/robocop_goto.py 0.3 0"),
+        (("grade", "hand_in"), "/robocop_grade.py hand_in"),
     ):
-        done = calls(names, *words, ROBOCOP_DRY_RUN="1")
-        if faults and words[0] != "grade":
+        is_refused = faults and words[0] != "grade"  # by the program itself
+        done = calls(names, *words, ROBOCOP_DRY_RUN="" if is_refused else "1")
+        if is_refused:
             assert done.returncode == 1 and done.stdout == "" and explained(done.stderr, names), done.stderr
         else:
-            assert done.returncode == 0 and done.stdout.endswith(started), done.stderr
+            assert done.returncode == 0 and done.stdout.rstrip().endswith(started), done.stderr
         assert ("ROS_NAMESPACE=red is left out" in done.stderr) is ("a namespace" in names)
         assert "Traceback" not in done.stderr
 

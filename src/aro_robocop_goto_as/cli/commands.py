@@ -14,11 +14,11 @@ import time
 from pathlib import Path
 from typing import Callable, Dict, List, NoReturn, Sequence, Tuple
 
+from .. import x_display
 from ..errors import RobocopError
 from ..launch_arguments import TRUE, LaunchArguments, described, with_absolute_path
 from ..names import ACTION, ACTION_TYPE, PACKAGE, ROOT, SIMULATOR, absolute, robocop
 from ..own_path import expect_own
-from ..probes import x_display
 from ..suggestions import did_you_mean
 from . import doctor
 
@@ -233,7 +233,6 @@ COMMANDS: Dict[str, Callable[[List[str]], Plan]] = {
 QUESTIONS: Dict[str, Callable[..., str]] = {
     "_meant": meant,
     "_launch_arguments": launch_arguments,
-    "_missing_modules": doctor.missing_modules,
 }
 
 
@@ -243,7 +242,9 @@ def main(words: Sequence[str]) -> None:
     try:
         if command == "doctor":
             sys.exit(doctor.report(*arguments))
-        if command in QUESTIONS:
+        elif command == "_require_modules":
+            doctor.require_modules()
+        elif command in QUESTIONS:
             print(QUESTIONS[command](*arguments))
         else:
             parts, program = COMMANDS[command](arguments)

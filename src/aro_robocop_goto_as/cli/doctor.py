@@ -6,12 +6,13 @@ import os
 import platform
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 from typing import Dict, List, Tuple
 
+from .. import x_display
 from ..errors import MasterError
 from ..names import ROOT, SIMULATOR, absolute, robocop
-from ..probes import x_display
 
 PYTHON = "/usr/bin/python3"
 PACKAGES = ("rospy", "numpy", "pybullet")
@@ -99,6 +100,14 @@ def ros_in_opt() -> str:
 def missing_modules() -> str:
     """The Python modules that ROS in /opt/ros and the system lack."""
     return subprocess.run([PYTHON, "-c", FIND, *MODULES], stdout=subprocess.PIPE, text=True).stdout.strip()
+
+
+def require_modules() -> None:
+    """End with an error if ROS in /opt/ros lacks Python modules, which ./robocop does not install there."""
+    missing = missing_modules()
+    if missing:
+        where = f"ROS is at {ros_in_opt()}, but these Python modules are missing: {missing}"
+        sys.exit(f"robocop: {where} (in ros-noetic-* or python3-* packages)")
 
 
 def examine(

@@ -1,1 +1,1 @@
-"""Operating system processes: how programs start, signals, locks of files."""
+"""Operating system processes: how programs start, and signals."""

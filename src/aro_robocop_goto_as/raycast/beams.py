@@ -2,19 +2,42 @@
 
 import ctypes
 import math
-from functools import partial
-from typing import Callable, Sequence
+from functools import lru_cache, partial
+from typing import Any, Callable, Sequence
 
 import numpy as np
 
+from .. import compiled
 from ..compiled import address, structure
-from .caster_library import load
 from .cross_section import NO_CIRCLES, CrossSection
 
 TOLERANCE = 1e-9  # [rad] as in caster.c
 NO_OWNERS = np.zeros(0, np.int64)
+REFUSED = {1: "robots: expected numbers of robots in the scene", 2: "poses: expected finite numbers"}  # as in caster.c
 
 _Beams, _BeamPlane, _BeamScene = (structure("raycast/caster.c", name) for name in ("beams", "beam_plane", "beam_scene"))
+
+
+def _require_ok(status: Any, _function: object, _arguments: object) -> Any:
+    if status:
+        raise ValueError(REFUSED[status])
+    return status
+
+
+@lru_cache(maxsize=None)
+def load() -> ctypes.PyDLL:
+    """The compiled library of caster.c and sensors/lidar.c; InstallationError as compiled.load.
+
+    It holds the GIL during a call, so two threads cannot use the marks of tiles at once.
+    """
+    library = compiled.load("caster", "raycast/caster.c")
+    pointer, integer, unsigned = ctypes.c_void_p, ctypes.c_int64, ctypes.c_uint64
+    library.aro_cast.restype, library.aro_cast.errcheck = ctypes.c_int, _require_ok
+    library.aro_cast.argtypes = [pointer, pointer, integer, pointer, ctypes.c_double, pointer]
+    library.aro_normals.restype = library.aro_measure.restype = None
+    library.aro_normals.argtypes = [unsigned, unsigned, unsigned, integer, pointer]
+    library.aro_measure.argtypes = [pointer, integer, pointer, pointer, pointer]
+    return library
 
 
 class BeamPlane:

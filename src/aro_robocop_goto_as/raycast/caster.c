@@ -1,9 +1,9 @@
 /* Exact distances along the beams of planar sensors to segments, circles and other robots.
  *
  * A shape is compared only with the beams between the bearings of its two edges. Of segments that are listed in tiles,
- * only those are compared whose tiles a beam passes through. Each distance depends on one beam and one shape only, and a
- * beam's result is their minimum, so results depend neither on the order of the shapes nor on which other sensors are
- * cast.
+ * only those are compared whose tiles a beam passes through. Each distance depends on one beam and one shape only, and
+ * a beam's result is their minimum, so results depend neither on the order of the shapes nor on which other sensors
+ * are cast.
  */
 
 #include <math.h>

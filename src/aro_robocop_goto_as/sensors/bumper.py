@@ -6,8 +6,6 @@ from typing import Mapping
 from ..param_loading import parameter
 from .sensor import RateParams, RobotIndices, Sensor, SensorContext
 
-BUMPER = "bumper"
-
 
 @dataclass(frozen=True)
 class BumperParams(RateParams):
@@ -19,7 +17,7 @@ class BumperParams(RateParams):
 class Bumper(Sensor):
     """touching: whether each robot touches something; only robots whose bumper was due last are in it."""
 
-    topic = BUMPER
+    topic = "bumper"
 
     def __init__(self, params: BumperParams, context: SensorContext) -> None:
         super().__init__(context, params.bumper_rate)

@@ -8,8 +8,6 @@ from ..param_loading import PROFILES_OWN, parameter, positive
 from .camera_image import CameraImage, CameraSpec
 from .sensor import RateParams, RobotIndices, Sensor, SensorContext
 
-CAMERA = "camera"
-
 Figures = Tuple[int, int, float]  # width, height [pixels], horizontal field of view [rad]
 
 SMALL: Figures = (160, 120, 1.02974)  # the field of view in turtlebot3_description's URDF; small images cost less
@@ -51,7 +49,7 @@ class CameraParams(RateParams):
 class Camera(Sensor):
     """specs: of each robot, None for a robot without a camera; images: by robot, only of robots that were due last."""
 
-    topic = CAMERA
+    topic = "camera"
 
     def __init__(self, params: CameraParams, context: SensorContext) -> None:
         super().__init__(context, params.camera_rate)

@@ -8,8 +8,7 @@ from .bumper import Bumper, BumperParams
 from .camera import Camera, CameraParams
 from .ground_truth import GroundTruth, TruthParams
 from .imu import Imu, ImuParams
-from .lidar import Lidar
-from .lidar_profiles import LidarParams
+from .lidar import Lidar, LidarParams
 from .odometry import JointEncoders, OdometryParams, WheelOdometry
 from .sensor import Sensor, SensorContext
 

@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from ..param_loading import parameter
 from .sensor import MeasurementCalls, RateParams, RobotIndices, Sensor, SensorContext
 
-GROUND_TRUTH = "ground_truth_odom"
-
 
 @dataclass(frozen=True)
 class TruthParams(RateParams):
@@ -19,7 +17,7 @@ class TruthParams(RateParams):
 class GroundTruth(Sensor):
     """poses: (n, 3) world_from_footprint; twists: (n, 2) v [m/s], w [rad/s]; both are the fleet's own rows."""
 
-    topic = GROUND_TRUTH
+    topic = "ground_truth_odom"
 
     def __init__(self, params: TruthParams, context: SensorContext) -> None:
         super().__init__(context, params.ground_truth_rate if params.ground_truth else 0)

@@ -9,10 +9,7 @@ import numpy as np
 from ..geometry import STANDARD_GRAVITY, Pose3D, compose3, rotation_matrix
 from ..param_loading import parameter
 from ..robot.model import BodyState
-from .sensor import MeasurementCalls, RateParams, RobotIndices, Sensor, SensorContext
-
-IMU = "imu"
-FIRST_STREAM = 1  # of the noise of the first robot's IMU, the next one's is 2, ...; see sensor.py
+from .sensor import MeasurementCalls, NoiseStreams, RateParams, RobotIndices, Sensor, SensorContext
 
 
 @dataclass(frozen=True)
@@ -60,7 +57,7 @@ def measure(
 class Imu(Sensor):
     """samples: (n, 10), the parts of each as described above."""
 
-    topic = IMU
+    topic = "imu"
 
     def __init__(self, params: ImuParams, context: SensorContext) -> None:
         super().__init__(context, params.imu_rate)
@@ -79,5 +76,5 @@ class Imu(Sensor):
         context = self.context
         for robot in robots:
             before, after, mount = self._before[robot], context.engine.body(robot), context.models[robot].base_from_imu
-            noise = context.noise.stream(FIRST_STREAM + robot)
+            noise = context.noise.stream(NoiseStreams.FIRST_IMU + robot)
             self.samples[robot] = measure(before, after, 1.0 / context.rate, mount, self.params, noise)

@@ -11,10 +11,9 @@ from ..compiled import address, structure
 from ..geometry import Pose2D, compose, inverse
 from ..param_loading import parameter
 from ..robot.fleet import library
-from .sensor import MeasurementCalls, RateParams, RobotIndices, Sensor, SensorContext
+from .sensor import MeasurementCalls, NoiseStreams, RateParams, RobotIndices, Sensor, SensorContext
 
-ODOM, JOINTS = "odom", "joint_states"
-SLIP_STREAM = 2**32  # of the noise of all encoders; see sensor.py
+ODOM = "odom"
 
 _Odometers = structure("sensors/odometry.c", "odometers")
 
@@ -106,7 +105,7 @@ class WheelOdometry(Sensor):
         return np.floor(angles / self._resolution) * self._resolution if self._resolution else angles
 
     def _draw_slip(self) -> None:
-        self.context.noise.stream(SLIP_STREAM).standard_normal(out=self._noise)
+        self.context.noise.stream(NoiseStreams.ENCODERS).standard_normal(out=self._noise)
 
     def _copy(self) -> None:
         self.poses[:], self.twists[:] = self._fleet.poses, self._fleet.twists
@@ -130,7 +129,7 @@ class WheelOdometry(Sensor):
 class JointEncoders(Sensor):
     """angles: (n, 2) [rad] of the wheels, left and right, as the encoders read them; speeds: (n, 2) [rad/s], exact."""
 
-    topic = JOINTS
+    topic = "joint_states"
 
     def __init__(self, params: OdometryParams, context: SensorContext, odometry: WheelOdometry) -> None:
         super().__init__(context, params.joint_state_rate)

@@ -1,7 +1,6 @@
 """The interface of a sensor, and the robots, world and noise that all sensors share.
 
-Noise is repeatable by seed, stream and step: of the lidar's ranges in lidar.c, of the other sensors here. Each noise
-has streams of its own: from 1 on the IMUs', 2**32 the encoders'; from 2**33 on are free.
+Noise is repeatable by seed, stream and step: of the lidar's ranges in lidar.c, of the other sensors by NoiseStreams.
 """
 
 import ctypes
@@ -33,10 +32,13 @@ class Episode(ctypes.Structure):
 
 
 class NoiseStreams:
-    """One generator, set to the beginning of a stream on the present step.
+    """One generator, set to the beginning of a stream on the present step. Each noise has streams of its own.
 
     A new Philox for each stream would read entropy from the system, which costs more than the noise.
     """
+
+    FIRST_IMU = 1  # and one for each further robot
+    ENCODERS = 2**32  # of all robots
 
     def __init__(self, episode: Episode) -> None:
         self._episode = episode
@@ -109,7 +111,7 @@ class Sensor:
     topic = ""  # in the robot's namespace; sensors are called by it
     always_on = False  # whether it measures also while nobody subscribes
     frame = ""  # of its own, if the robots' URDF has none for it
-    mounts: Mounts = ()  # base_from_sensor of each robot, where the sensor has a frame of its own
+    mounts: Mounts = ()  # base_from_sensor of each robot; on /tf_static if the sensor has a frame of its own
 
     def __init__(self, context: SensorContext, rate: int) -> None:
         """`rate` [Hz]; 0: never."""

@@ -17,9 +17,8 @@ from ..robot.model import RobotSpec
 from ..sensors.catalog import Sensors
 from ..sensors.sensor import SensorContext
 from ..world.model import Occupancy, World
-from .agenda import Agenda, StepEvents, Subscriptions
+from .agenda import Agenda, StepEvents, Subscriptions, stamp_ns
 from .params import SimParams
-from .schedule import stamp_ns
 
 
 class Change(enum.Enum):

@@ -22,16 +22,17 @@ from robocop_hosting.workspace import exclusive, places
 from ..cli import INTERRUPTED, WRONG_USE
 from ..errors import GradingSetupError
 from ..files.exports import class_folder, people, visible
+from ..grades import Grade
 from ..plan import Plan
 from ..plan_file import load
 from ..report.write import make_report_folder
-from ..sandbox.bubblewrap import expect_private, open_sandbox
+from ..sandbox.bubblewrap import open_sandbox
 from ..scenarios import MAX_SEED
 from ..submission import lab_environment
 from ..texts import printable_lines, shortened
 from .hand_ins import collect
 from .overview import page
-from .results import HAND_IN_STAMP, MAX_TOLD, Results, StoredGrade, write_atomically
+from .results import HAND_IN_STAMP, MAX_TOLD, Results, write_atomically
 from .summary import Summary, pace
 from .table import one_line, table
 from .worker import work
@@ -50,7 +51,7 @@ class Gradebook:
         self.folder, self.plan, self.results = folder, plan, results
         self._people = people(folder)
         self.count = len(hand_ins)
-        self.done: Dict[str, StoredGrade] = {
+        self.done: Dict[str, Grade] = {
             name: results.read(name) for name, digest in hand_ins.items() if results.has(name, digest)
         }
         self.waiting = {name: digest for name, digest in hand_ins.items() if name not in self.done}
@@ -86,7 +87,7 @@ class Gradebook:
         self.waiting.pop(name, None)
         self._ran += result.is_judged
         problems = shortened(f" ({' | '.join(result.problems)})", MAX_TOLD) if result.problems else ""
-        words = f"{result.words if result.is_judged else 'not gradable'}, {result.seconds:.0f} s{problems}"
+        words = f"{result.words if result.is_judged else 'not gradable'}{problems}"
         left = f"; {self.pace}" if self.pace else ""
         return one_line(f"[{len(self.done)}/{self.count}] {name}: {words}{left}")
 
@@ -102,9 +103,7 @@ class Gradebook:
 def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog=typed("grade-class"), description=__doc__, allow_abbrev=False)
-    parser.add_argument(
-        "folder", metavar="DIR", help="contains a folder, zip or tar archive, or Python file per hand-in"
-    )
+    parser.add_argument("folder", metavar="DIR", help="contains a folder, archive or Python file per hand-in")
     parser.add_argument("--report", metavar="DIR", help="folder of the results (default: DIR_results)")
     parser.add_argument("--plan", metavar="YAML", help="limits, points and packages (default: of the results so far)")
     parser.add_argument("--seed", type=int, metavar="N", help=CLASS_SEED)
@@ -124,8 +123,6 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
         # Anyone who can reach the port of another one can run any code on its workers, with their user's rights.
         raise GradingSetupError(f"--scheduler {args.scheduler}: expected tls://HOST:PORT, see docs/grading.md")
     out = Path(os.path.realpath(args.report or f"{folder}_results"))
-    if not args.unsafe:
-        expect_private(folder)
     expect_own(out, CLASS_STAMP, folder)
     given, folder = folder, class_folder(folder, (CSV, HTML))
     if folder != given:

@@ -6,10 +6,10 @@ from typing import Any, Counter, Dict, Iterator, List, Mapping, Sequence, Tuple
 
 from ..checks.verdict import without_figures
 from ..files.exports import Person
-from ..grades import CheckOutcome
+from ..grades import CheckOutcome, Grade
 from ..plan import PARTS, Plan
 from ..report.write import render
-from .results import MAX_TOLD, StoredGrade
+from .results import MAX_TOLD
 from .summary import Summary
 
 MAX_CAUSES = 3
@@ -18,7 +18,7 @@ SYMBOLS = {"passed": "●", "failed": "✕", "not reached": "○", "not handed i
 
 def page(
     title: str,
-    results: Sequence[StoredGrade],
+    results: Sequence[Grade],
     plan: Plan,
     figures: Summary,
     missing: Mapping[str, str] = MappingProxyType({}),
@@ -40,7 +40,7 @@ def page(
     )
 
 
-def _checks(results: Sequence[StoredGrade], plan: Plan) -> Iterator[Dict[str, Any]]:
+def _checks(results: Sequence[Grade], plan: Plan) -> Iterator[Dict[str, Any]]:
     """For each check the number of each outcome and the most frequent causes, without those of failures that follow."""
     counts = [collections.Counter(column) for column in zip(*(result.outcomes(plan) for result in results))]
     causes: Dict[str, Counter[str]] = collections.defaultdict(collections.Counter)

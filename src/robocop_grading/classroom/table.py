@@ -6,10 +6,9 @@ from types import MappingProxyType
 from typing import Any, List, Mapping, Sequence
 
 from ..files.exports import Person
-from ..grades import CheckOutcome
+from ..grades import CheckOutcome, Grade
 from ..plan import PARTS, Plan
 from ..texts import printable, shortened
-from .results import StoredGrade
 
 # Moodle's grading worksheet, whose last column is "-" where there is no grade yet; Gradescope's people.
 IMPORTED = ("Identifier", "Full name", "Email", "SID", "Grade", "Last modified (grade)")
@@ -20,7 +19,7 @@ BYTE_ORDER_MARK = "\ufeff"  # without it spreadsheets read the file in another e
 
 
 def table(
-    results: Sequence[StoredGrade],
+    results: Sequence[Grade],
     plan: Plan,
     problems: Mapping[str, str] = MappingProxyType({}),
     people: Mapping[str, Person] = MappingProxyType({}),
@@ -36,7 +35,7 @@ def table(
     columns = IMPORTED if people else ()
     checks = [check.name for check in plan.checks]
     rows.writerow(["name", *columns, "points", "of", "extra", *PARTS, "problem", *checks, "notes"])
-    for result in [*results, *(StoredGrade(name, (), (problem,)) for name, problem in sorted(problems.items()))]:
+    for result in [*results, *(Grade(name, (), (problem,)) for name, problem in sorted(problems.items()))]:
         points: List[Any] = ["", plan.points, *[""] * (1 + len(PARTS))]
         if result.is_judged:
             of_parts = [result.points_of(part) for part in PARTS]

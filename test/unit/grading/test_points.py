@@ -8,7 +8,6 @@ import pytest
 from grading_records import PLAN
 
 from robocop_grading.checks import Failed
-from robocop_grading.classroom.results import StoredGrade
 from robocop_grading.classroom.table import table
 from robocop_grading.cli import in_short, progress
 from robocop_grading.grades import CheckOutcome, CheckResult, Grade, completed
@@ -100,7 +99,7 @@ def test_part_that_is_not_handed_in_counts_the_same_in_every_report(tmp_path):
     assert json.loads((tmp_path / "classroom.json").read_text())["max_score"] == PLAN.points
     tests = json.loads((tmp_path / "results.json").read_text())["tests"]
     assert sum(test.get("max_score", 0.0) for test in tests) == pytest.approx(PLAN.points)
-    row = table([StoredGrade("anna", grade.checks)], PLAN).splitlines()[1]
+    row = table([Grade("anna", grade.checks)], PLAN).splitlines()[1]
     assert row.startswith(f"anna,{server},{PLAN.points},0.0,{server},not handed in,")
 
 

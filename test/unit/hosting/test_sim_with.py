@@ -18,7 +18,6 @@ from robocop_hosting.package import LaunchPlan, find_package
 from robocop_hosting.scripts import Choice
 from robocop_hosting.sim_with import (
     expect_startable,
-    lock_free_folder,
     parsed,
     sort_arguments,
     write_launch_file,
@@ -91,7 +90,3 @@ def test_script_that_roslaunch_can_not_start_is_refused_with_the_remedy_and_left
         expect_startable(tmp_path / "b.py")
     expect_startable(tmp_path / "c.py")
     assert "c.py is started by '/bin/python', which the lab may not have" in capsys.readouterr().err
-
-
-def test_two_that_run_the_same_package_at_once_build_in_different_folders(tmp_path):
-    assert [lock_free_folder(tmp_path / "with", "lab").name for _ in range(3)] == ["lab", "lab-1", "lab-2"]

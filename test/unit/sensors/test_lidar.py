@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from aro_robocop_goto_as.raycast.caster_library import load
+from aro_robocop_goto_as.raycast.beams import load
 
 
 def _normals(seed, stream, step, count):

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from aro_robocop_goto_as.geometry import Pose2D
-from aro_robocop_goto_as.sensors.lidar import RangeErrors
-from aro_robocop_goto_as.sensors.lidar_profiles import PROFILES
+from aro_robocop_goto_as.sensors.lidar import PROFILES, RangeErrors
 from aro_robocop_goto_as.sensors.sensor import Episode
 from aro_robocop_goto_as.simulation.params import SimParams
 

@@ -21,7 +21,7 @@ from ...param_loading import MAX_COORDINATE
 from ...process import signals
 from ...process.start import typed
 from .. import graph, settings
-from ..client.follower import Follower
+from ..client.goal_follower import GoalFollower
 from ..client.goal_frame import GoalTransformer
 from ..waiting import wait_until
 
@@ -82,7 +82,7 @@ class Goto:
         self.odom: Optional[Odometry] = None
         self.phase = ""  # of the newest feedback, "" before the first
         rospy.Subscriber(absolute_if_named(args.robot, "odom"), Odometry, self._store, queue_size=1)
-        self.goal = Follower(self.action, self.show)
+        self.goal = GoalFollower(self.action, self.show)
         self.transformer = GoalTransformer(self.goal_frame, self.goal_frame, SERVER_TIMEOUT)
 
     def _store(self, message: Odometry) -> None:

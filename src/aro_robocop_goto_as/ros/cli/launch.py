@@ -12,7 +12,7 @@ import roslaunch
 import rospkg
 from roslaunch import rlutil
 from roslaunch.parent import ROSLaunchParent
-from roslaunch.pmon import ProcessListener
+from roslaunch.pmon import ProcessListener, ProcessMonitor
 
 from ...names import PACKAGE, SIMULATOR, absolute
 from ...process import signals
@@ -24,17 +24,19 @@ POLL = 0.05  # [s, wall]
 WHOLE_NODE = "\n\nNode xml is"  # in roslaunch's text about a <param>, after the XML of that
 
 
-class Launcher(ROSLaunchParent, ProcessListener):
-    """roslaunch's parent of all nodes; it notes whether a required node has failed."""
+class Failure(ProcessListener):
+    """Whether a required node has failed."""
 
-    failed = False
+    def __init__(self, monitor: ProcessMonitor) -> None:
+        self._monitor = monitor
+        self.happened = monitor.is_shutdown  # it has, before this listener was there
 
     def process_died(self, process_name: str, exit_code: Optional[int]) -> None:
         """Called by roslaunch; exit_code is minus the signal's number after a signal, None if unknown."""
-        process = self.pm.get_process(process_name)
+        process = self._monitor.get_process(process_name)
         is_rviz = process_name.rpartition("/")[2].startswith("rviz")  # it may crash when it is closed
         if exit_code != 0 and process is not None and process.required and not is_rviz:
-            self.failed = True
+            self.happened = True
 
 
 def launch(arguments: List[str]) -> int:
@@ -59,25 +61,24 @@ def _run(options: argparse.Namespace, deferred: signals.Deferred) -> int:
     """Start the processes with signals deferred, and wait for their end; returns the exit status."""
     run_id = rlutil.get_or_generate_uuid(None, False)
     roslaunch.configure_logging(run_id)
-    launcher = Launcher(
+    launcher = ROSLaunchParent(
         run_id,
         rlutil.resolve_launch_arguments(options.file),
-        process_listeners=[],
         force_log=options.quiet,
         show_summary=not (options.quiet or options.no_summary),
     )
-    launcher.process_listeners.append(launcher)
     roslaunch.Process(PACKAGE, "launcher", [], {})  # never started: the first one installs roslaunch's signal handlers
     with deferred:  # a signal while roslaunch starts a process makes it wait for itself, for 10 s and more
         try:
             launcher.start()
         except (TypeError, OverflowError) as error:
             raise roslaunch.RLException(f"{_unsendable(launcher.config.params)}: {error}") from error
-        failed = launcher.pm.is_shutdown and not deferred.interrupted  # too early for process_died()
+        failure = Failure(launcher.pm)
+        launcher.pm.add_process_listener(failure)
     if options.quiet or options.overview:
         _show_overview(launcher, Path(rospkg.get_log_dir(), run_id), options)
     launcher.spin()
-    return FAILED if failed or launcher.failed else 0
+    return FAILED if failure.happened else 0
 
 
 def _unsendable(params: Dict[str, Any]) -> str:
@@ -90,18 +91,20 @@ def _unsendable(params: Dict[str, Any]) -> str:
     return "parameters"
 
 
-def _show_overview(launcher: Launcher, logs: Path, options: argparse.Namespace) -> None:
+def _show_overview(launcher: ROSLaunchParent, logs: Path, options: argparse.Namespace) -> None:
     """Print it when the simulator runs: if it ends at its start, its reason is the last line on the screen."""
-    nodes = launcher.config.nodes
-    expected = options.overview or any(node.name == SIMULATOR for node in nodes)
+    started = launcher.config.nodes
+    expected = options.overview or any(node.name == SIMULATOR for node in started)
     simulator = _simulator(launcher) if expected else None
     from .overview import overview  # now that everything else has started
 
     if not launcher.pm.is_shutdown:
+        running = {process.rpartition("-")[0] for process in launcher.pm.get_active_names()}
+        nodes = [node for node in started if f"{node.namespace}{node.name}".strip("/") in running]
         print(overview(nodes, simulator, logs, not options.quiet), flush=True)
 
 
-def _simulator(launcher: Launcher) -> Optional[Dict[str, Any]]:
+def _simulator(launcher: ROSLaunchParent) -> Optional[Dict[str, Any]]:
     """Wait for the simulator; its parameters, or None if everything ends or READY_TIMEOUT is over."""
     name = absolute("", SIMULATOR)
     master = rosgraph.Master("/robocop_launch", launcher.config.master.uri)

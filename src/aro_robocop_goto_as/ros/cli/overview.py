@@ -13,6 +13,7 @@ from ...simulation.params import SimParams
 from ...web.access import default_host, is_loopback, url
 from ...web.params import WebParams
 
+DEFAULT_MASTER = "http://localhost:11311"  # roscore's port
 DEFAULT_WORLD = SimParams().world.world
 # Goals in this world, after a reset: in front of the robot, and one that no moving pillar comes near to
 IN_FRONT, BESIDE = "0.3 0", "-0.7 -0.6"
@@ -59,7 +60,7 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
 def _command() -> str:
     """The command line of ./robocop in a second terminal, which may not know this one's master."""
     uri, command = rosgraph.get_master_uri(), robocop()
-    is_default = uri == rosgraph.rosenv.DEFAULT_MASTER_URI
+    is_default = uri.rstrip("/") == DEFAULT_MASTER
     is_known = is_default or COMMAND_VARIABLE in os.environ  # a container has one environment
     return command if is_known else f"ROS_MASTER_URI={uri} {command}"
 

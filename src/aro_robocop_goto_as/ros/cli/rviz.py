@@ -7,7 +7,7 @@ import sys
 import roslib.packages
 from rosgraph.names import load_mappings
 
-from ...probes import x_display
+from ... import x_display
 from ..node_main import answer_help, leave_name_to_another
 from ..share import share
 

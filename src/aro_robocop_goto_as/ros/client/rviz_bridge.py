@@ -12,7 +12,7 @@ from aro_robocop_goto_as.msg import GoToPositionFeedback
 from ...errors import FrameError
 from ...names import ACTION, BRIDGE, position_text
 from ..node_main import answer_help, load_params, node
-from .follower import Follower
+from .goal_follower import GoalFollower
 from .goal_frame import GoalTransformer
 from .params import BridgeParams
 
@@ -31,10 +31,10 @@ class Bridge:
         self.sending = threading.Lock()  # held while a goal is being sent: it is reported only afterwards
         self.last_status = ""
         self.transformer = GoalTransformer(p.goal_frame, p.default_frame, p.transform_timeout)
-        self.goal = Follower(ACTION, self.on_feedback)
+        self.goal = GoalFollower(ACTION, self.on_feedback)
         self.status = rospy.Publisher("~status", String, queue_size=1, latch=True)
         rospy.Subscriber("move_base_simple/goal", PoseStamped, self.on_click, queue_size=10)
-        rospy.Timer(rospy.Duration.from_sec(p.status_period), self.report, reset=True)
+        rospy.Timer(rospy.Duration.from_sec(p.status_period), self.publish_state, reset=True)
 
     def on_click(self, message: PoseStamped) -> None:
         """Store a click; a callback."""
@@ -49,7 +49,7 @@ class Bridge:
 
     def run(self) -> None:
         """Forward clicks until shutdown."""
-        self.report()  # also where simulated time stands still, so that no timer fires
+        self.publish_state()  # also where simulated time stands still, so that no timer fires
         while not rospy.is_shutdown():
             if not self.clicked.wait(POLL):
                 continue
@@ -58,7 +58,7 @@ class Bridge:
             try:
                 position = self.resolve(click)
             except FrameError as error:
-                self.publish_status(f"goal refused: {error}", rospy.logerr)
+                self.publish(f"goal refused: {error}", rospy.logerr)
             else:
                 self.replace_goal(position, click)
 
@@ -90,7 +90,7 @@ class Bridge:
         rospy.loginfo(
             "goal sent: %s, for the server %s", where, position_text(position.x, position.y, self.p.goal_frame)
         )
-        self.report()
+        self.publish_state()
 
     def wait_for_server(self, where: str) -> None:
         """Wait as the client's wait_for_server() does, but only until there is a newer click or the node ends."""
@@ -109,13 +109,14 @@ class Bridge:
 
     # -- status --
 
-    def report(self, _event: Optional[rospy.timer.TimerEvent] = None) -> None:
+    def publish_state(self, _event: Optional[rospy.timer.TimerEvent] = None) -> None:
         """Publish the state of the server, and of the newest goal as this client knows it."""
         if not self.goal.is_up():
-            return self.publish_status(f"waiting for {ACTION}; if it has ended, its terminal says why", rospy.logwarn)
+            log = rospy.logwarn if self.last_status else rospy.loginfo  # both may have been started just now
+            return self.publish(f"waiting for {ACTION}; if it has ended, its terminal says why", log)
         with self.sending:
             text = self.state()
-        self.publish_status(text, rospy.loginfo)
+        self.publish(text, rospy.loginfo)
 
     def state(self) -> str:
         """The newest goal's state in words, with the newest feedback or how the goal ended."""
@@ -129,7 +130,7 @@ class Bridge:
         errors = f"position_error {feedback.position_error:.2f} m, angle_error {feedback.angle_error:.2f} rad"
         return f"{text}: {feedback.message} ({errors})"
 
-    def publish_status(self, text: str, log: Callable[..., None]) -> None:
+    def publish(self, text: str, log: Callable[..., None]) -> None:
         """Publish a status, and log it if it has changed."""
         if text != self.last_status:
             log("%s", text)

@@ -8,8 +8,8 @@ The rule: each message is written before the next step is simulated. A subscribe
 is marked, with one warning, and misses whole messages until it reads again. It stays connected, as rospy's subscribers
 do not return to a publisher that has closed the connection.
 
-publisher        advertises a topic, and knows its subscribers
-subscriber_link  one subscriber's socket: the messages that it misses, and the rest of a message that it took in part
+publisher        advertises a topic, and knows its subscribers' sockets: which messages each one misses, and the rest of
+                 a message that it took in part
 packed           messages that are serialized once, and then filled by batch.c
 batch            the messages of one step: batch.c fills and sends them all
 rospy_internals  the private parts of rospy that are used here

@@ -21,8 +21,7 @@ from ...sensors.bumper import Bumper
 from ...sensors.camera import Camera
 from ...sensors.ground_truth import GroundTruth
 from ...sensors.imu import FORCE, ORIENTATION, RATES, Imu, ImuParams
-from ...sensors.lidar import Lidar
-from ...sensors.lidar_profiles import LidarProfile
+from ...sensors.lidar import Lidar, LidarProfile
 from ...sensors.odometry import JointEncoders, WheelOdometry
 from ...sensors.sensor import Sensor
 from .. import convert
@@ -100,7 +99,7 @@ class RobotFrames:
         self.row, self._name = row, name
         self.world, self.map = WORLD_FRAME, MAP_FRAME
         self.odom, self.footprint = self.of(ODOM_FRAME), self.of(FOOTPRINT_FRAME)
-        self.scan, self.imu, self.camera = map(self.of, (SCAN_FRAME, IMU_FRAME, CAMERA_FRAME))
+        self.imu, self.camera = self.of(IMU_FRAME), self.of(CAMERA_FRAME)
 
     def of(self, name: str) -> str:
         """A frame or topic of this robot."""
@@ -170,5 +169,5 @@ def _(sensor: WheelOdometry, robot: RobotFrames, real: bool) -> List[SensorTopic
 
 @topics_of.register
 def _(sensor: Lidar, robot: RobotFrames, real: bool) -> List[SensorTopic]:
-    message = packed_scan(sensor.profile, robot.scan, sensor.ranges[robot.row])
+    message = packed_scan(sensor.profile, robot.of(sensor.frame or SCAN_FRAME), sensor.ranges[robot.row])
     return [SensorTopic(robot.of(sensor.topic), sensor_msgs.LaserScan, message)]

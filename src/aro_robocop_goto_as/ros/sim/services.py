@@ -14,8 +14,8 @@ from aro_robocop_goto_as.srv import DeleteModel, MoveModel, Reset, SetPose, Spaw
 from ...errors import FrameError, PlaceError, ShutdownError, WorldError
 from ...geometry import Pose2D, Pose3D, compose
 from ...names import MAP_FRAME, ODOM_FRAME, WORLD_FRAME, prefixed
+from ...simulation.agenda import stamp_ns
 from ...simulation.running import RunningSimulator
-from ...simulation.schedule import stamp_ns
 from ...world.edit import requested_model, with_model, with_model_at, without_model
 from ...world.model import World
 from .. import convert

@@ -20,7 +20,7 @@ from ...web import text
 from ...web.page import floor_point
 from ...web.state import PageState
 from .. import convert, markers
-from ..client.follower import STATES, UNFINISHED
+from ..client.goal_follower import STATES, UNFINISHED
 from ..connected_nodes import publishers_of
 from ..marker_shapes import MarkerStore
 from .part import Context, Inbox, Part

@@ -146,6 +146,11 @@ WRONG = [
     ),
     ("action_server", Record("start", "server", servers=("/robovop_goto_as",)), "called robovop_goto_as; the"),
     (
+        "action_server",
+        Record("start", "server", up=False, servers=("/robocop_goto_as",), types=("actionlib/TestAction",)),
+        "The action's type is actionlib/TestAction; the handout's is GoToPositionAction",
+    ),
+    (
         "stops_at_obstacle",
         _aborted(samples=tuple(replace(it, touching=it.time > 10.5) for it in _aborted().samples)),
         "kept moving after the result (ABORTED)",

@@ -10,7 +10,6 @@ import pytest
 from grading_records import CANCEL, PLAN, PLAN_FILE, keep, keep_grade
 from support import ROOT
 
-from aro_robocop_goto_as.errors import RobocopError
 from robocop_grading.classroom import main
 from robocop_grading.classroom.main import Gradebook
 from robocop_grading.classroom.results import Results
@@ -111,11 +110,6 @@ def test_results_of_another_class_are_not_replaced(folder, grade_class):
     assert grade_class(tuesday, report=str(first.results.folder))[0] == ["anna", "carl.py"]
 
 
-def test_class_among_the_systems_files_is_refused(grade_class):
-    with pytest.raises(RobocopError, match="/usr/bin: expected a submission outside /usr"):
-        grade_class(Path("/usr/bin"), unsafe=False)
-
-
 def test_scheduler_without_tls_is_refused(grade_class):
     with pytest.raises(GradingSetupError, match="--scheduler tcp://127.0.0.1:1: expected tls://HOST:PORT"):
         grade_class(scheduler="tcp://127.0.0.1:1")
@@ -135,7 +129,7 @@ def test_class_says_how_fast_it_is_and_who_is_not_gradable_and_why(group, monkey
     monkeypatch.setattr(group, "_started", time.monotonic() - 60.0)
     keep(group.results, "carl.zip")
     line = group.add("carl.zip", "")
-    assert line == f"[3/4] carl.zip: {CANCEL:g} of {CANCEL:g} points, 3 s; 1.0 a minute, about 2 min left"
+    assert line == f"[3/4] carl.zip: {CANCEL:g} of {CANCEL:g} points; 1.0 a minute, about 2 min left"
     assert group.add("řehoř", "no grade: the machine had no time") == "řehoř: no grade: the machine had no time"
     lines = group.summary_lines()
     averages = f"mean {CANCEL:.2f}, median {CANCEL:g} of {PLAN.points:g} points"

@@ -5,9 +5,10 @@ import re
 from grading_records import GROUP, PLAN, keep
 
 from robocop_grading.classroom.overview import page
-from robocop_grading.classroom.results import Results, StoredGrade
+from robocop_grading.classroom.results import Results
 from robocop_grading.classroom.summary import Summary
 from robocop_grading.files.exports import Person
+from robocop_grading.grades import Grade
 
 FIGURES = Summary((0.5, 0.0), 1, 8.0)
 
@@ -32,7 +33,7 @@ def test_it_counts_no_cause_of_a_failure_that_follows_from_another_one(tmp_path)
 
 
 def test_advice_is_told_apart_from_problems_and_no_text_ends_in_the_middle_of_a_word():
-    advised = StoredGrade("anna", GROUP[0].checks, ("bridge: robocop_rviz " * 40,), ("line 7: use rospy.Rate",))
+    advised = Grade("anna", GROUP[0].checks, ("bridge: robocop_rviz " * 40,), ("line 7: use rospy.Rate",))
     html = page("class", [advised], PLAN, FIGURES)
     (problems,) = re.findall("<span class=failed>(.*?)</span>", html)
     assert len(problems) <= 304 and problems.endswith(" robocop_rviz ...")

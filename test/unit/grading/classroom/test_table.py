@@ -8,9 +8,9 @@ from grading_records import GROUP, PLAN
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robocop_grading.classroom.results import StoredGrade
 from robocop_grading.classroom.table import table
 from robocop_grading.files.exports import Person
+from robocop_grading.grades import Grade
 
 
 def read(text):
@@ -48,7 +48,7 @@ def test_notes_and_problems_have_columns_of_their_own():
 
 @given(st.text(), st.text())
 def test_no_name_or_problem_controls_a_spreadsheet_whatever_separator_it_is_read_with(name, problem):
-    text = table([StoredGrade(name, (), (problem,))], PLAN, {name: problem})
+    text = table([Grade(name, (), (problem,))], PLAN, {name: problem})
     assert len(read(text)) == 2
     for separator in ",;\t":
         for row in csv.reader(io.StringIO(text[1:]), delimiter=separator):

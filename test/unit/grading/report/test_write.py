@@ -7,7 +7,7 @@ from html import unescape
 from pathlib import Path
 
 import pytest
-from grading_records import PLAN, RIGHT, changed
+from grading_records import PLAN, RIGHT, changed, graded
 from support import ROOT
 
 from robocop_grading.cli import in_short
@@ -42,6 +42,13 @@ def test_scenarios_in_which_every_check_passed_have_plots_only_if_all_are_asked_
     assert written(tmp_path, RIGHT, all_plots=True)[1].count("<svg") == 5
 
 
+@pytest.fixture
+def no_plots(monkeypatch):
+    """Reports without plots, which take seconds."""
+    monkeypatch.setattr(report, "_plot", lambda *_: "")
+
+
+@pytest.mark.usefixtures("no_plots")
 def test_what_follows_from_a_mistake_is_one_line_below_it(tmp_path):
     grade, html = written(tmp_path, STUCK, replace(STUCK, name="odd_scan"))
     (mistake,) = [it for it in grade.mistakes if "odd_scans" in {check.name for check in it.followers}]
@@ -49,16 +56,17 @@ def test_what_follows_from_a_mistake_is_one_line_below_it(tmp_path):
     assert "failed because of it: " in mistake.consequences and "odd_scans" in mistake.consequences
 
 
-def test_terminal_has_each_mistake_with_its_cost_and_what_was_seen_the_problems_and_the_points(tmp_path):
-    grade = replace(written(tmp_path, MOVING)[0], notes=("a note",), problems=("server: a \x1b[31mproblem",))
+def test_terminal_has_each_mistake_with_its_cost_and_what_was_seen_the_problems_and_the_points():
+    grade = replace(graded(MOVING), notes=("a note",), problems=("server: a \x1b[31mproblem",))
     mistake, seen, *others, problem, notes, points = in_short(grade)
     assert re.match(r"stands_at_end costs [\d.]+ points?: The robot kept moving", mistake)
     assert seen.startswith("    Expected ") and seen.endswith('s of scenario "left"')
     assert others and all(it.startswith("not reached: ") for it in others)
     assert (problem, notes) == ("problem: server: a  [31mproblem", "notes, which cost no points: 1, in the report")
-    assert points == f"<anna>: {grade.words}"
+    assert points == f"anna: {grade.words}"
 
 
+@pytest.mark.usefixtures("no_plots")
 @pytest.mark.parametrize("moves", [False, True])
 def test_command_that_shows_a_scenario_works_from_anywhere_and_names_no_path_of_somebody_else(tmp_path, moves):
     (tmp_path / "server-left.bag").write_bytes(b"")

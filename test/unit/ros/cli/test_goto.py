@@ -2,12 +2,14 @@
 
 import argparse
 import itertools
+import re
 
 import pytest
 from aro_robocop_goto_as.msg import GoToPositionFeedback
 from geometry_msgs.msg import Point
 from nav_msgs.msg import Odometry
 
+from aro_robocop_goto_as.cli.commands import HELP
 from aro_robocop_goto_as.ros.cli import goto
 from aro_robocop_goto_as.ros.cli.goto import NOT_REACHED, REACHED, parse
 
@@ -31,7 +33,14 @@ def test_only_a_missing_coordinate_is_called_missing(capsys):
     assert "the following arguments are required: Y\n" in capsys.readouterr().err
 
 
-class Follower:
+def test_each_option_is_in_the_help_that_needs_nothing_installed(capsys):
+    with pytest.raises(SystemExit):
+        parse(["--help"])
+    options = set(re.findall(r"--[a-z]+", capsys.readouterr().out)) - {"--help"}
+    assert options and options <= set(re.findall(r"--[a-z]+", HELP.read_text()))
+
+
+class GoalFollower:
     """Stands for the follower of a goal; what happens on each look at the server is scripted."""
 
     def __init__(self, *looks):
@@ -65,7 +74,7 @@ def made(monkeypatch):
 
     def make(follower, odom=None):
         monkeypatch.setattr(goto, "POLL", 0.0)
-        monkeypatch.setattr(goto, "Follower", lambda *_: follower)
+        monkeypatch.setattr(goto, "GoalFollower", lambda *_: follower)
         monkeypatch.setattr(goto, "GoalTransformer", lambda *_: None)
         monkeypatch.setattr(goto.rospy, "Subscriber", lambda *_, **__: None)
         goal = goto.Goto(argparse.Namespace(robot="", x=1.0, y=0.0, frame="map"))
@@ -77,13 +86,13 @@ def made(monkeypatch):
 
 @pytest.mark.parametrize("reached, status", [(True, REACHED), (False, NOT_REACHED)])
 def test_exit_status_is_the_success_of_the_result_and_the_last_line_tells_it(made, capsys, reached, status):
-    follower = Follower(lambda: follower.end("SUCCEEDED: so", reached))
+    follower = GoalFollower(lambda: follower.end("SUCCEEDED: so", reached))
     assert made(follower).follow(Point()) == status
     assert capsys.readouterr().out == "SUCCEEDED: so\n"
 
 
 def test_a_server_that_is_gone_ends_it(made, capsys):
-    assert made(Follower(lambda: False)).follow(Point()) == NOT_REACHED
+    assert made(GoalFollower(lambda: False)).follow(Point()) == NOT_REACHED
     assert "the server is gone" in capsys.readouterr().err
 
 
@@ -92,19 +101,19 @@ def interrupt():
 
 
 def test_an_interrupt_cancels_the_goal_and_its_end_is_told(made, capsys):
-    assert made(Follower(interrupt)).follow(Point()) == NOT_REACHED
+    assert made(GoalFollower(interrupt)).follow(Point()) == NOT_REACHED
     assert capsys.readouterr().out == "PREEMPTED: it was cancelled\n"
 
 
 def test_an_interrupt_while_the_goal_is_sent_cancels_it(made, capsys):
-    follower = Follower()
+    follower = GoalFollower()
     follower.send = lambda position: interrupt()  # as Deferred raises it once the goal is sent
     assert made(follower).follow(Point()) == NOT_REACHED
     assert capsys.readouterr().out == "PREEMPTED: it was cancelled\n"
 
 
 def test_each_phase_is_shown_once(made, capsys):
-    goal = made(Follower())
+    goal = made(GoalFollower())
     for text in ("rotating, 0.50 rad to go", "rotating, 0.40 rad to go", "driving, 1.00 m to go"):
         goal.show(GoToPositionFeedback(1.0, 0.5, text))
     assert [line.split("rad   ")[1][:8] for line in capsys.readouterr().out.splitlines()] == ["rotating", "driving,"]
@@ -115,7 +124,7 @@ def test_what_a_half_done_server_lacks_is_told_once(made, monkeypatch, capsys):
     monkeypatch.setattr(goto.time, "monotonic", lambda: next(clock))
     monkeypatch.setattr(goto.graph, "published_topics", list)
     monkeypatch.setattr(goto.rospy, "resolve_name", str)
-    follower = Follower(*[lambda: None] * 3, lambda: follower.end("ABORTED"))
+    follower = GoalFollower(*[lambda: None] * 3, lambda: follower.end("ABORTED"))
     made(follower, Odometry()).follow(Point())
     told = "no feedback; nobody publishes cmd_vel; the robot has not moved"
     assert capsys.readouterr().err == f"robocop goto: after 5 s: {told}\n"

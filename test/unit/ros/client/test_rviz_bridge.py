@@ -25,9 +25,11 @@ class System:
         monkeypatch.setattr(rospy, "is_shutdown", lambda: next(checks, True))
         monkeypatch.setattr(rospy, "Subscriber", lambda name, _, callback, **__: self.topics.update({name: callback}))
         monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: SimpleNamespace(publish=self.statuses.append))
-        monkeypatch.setattr(rospy, "Timer", lambda period, report, **__: self.timers.append((period.to_sec(), report)))
+        monkeypatch.setattr(
+            rospy, "Timer", lambda period, publish, **__: self.timers.append((period.to_sec(), publish))
+        )
         monkeypatch.setattr(rviz_bridge, "POLL", 0.0)
-        monkeypatch.setattr(rviz_bridge, "Follower", self.follower)
+        monkeypatch.setattr(rviz_bridge, "GoalFollower", self.follower)
         transformer = SimpleNamespace(frame_of=lambda pose: "map", resolve=self.resolve)
         monkeypatch.setattr(rviz_bridge, "GoalTransformer", lambda *given: self.transforms.append(given) or transformer)
         self.bridge = rviz_bridge.Bridge(BridgeParams())
@@ -90,7 +92,7 @@ def test_click_is_sent_once_in_the_servers_frame(system):
 def test_the_newest_click_waits_for_a_server_that_is_missing(system, newer, sent):
     looks = iter([lambda: newer and system.click(newer), lambda: None, lambda: setattr(system, "server_is_up", True)])
     system.server_is_up = False
-    system.bridge.report()
+    system.bridge.publish_state()
     system.on_look = lambda: next(looks, lambda: None)()
     system.click(1.0)
     system.bridge.run()
@@ -152,12 +154,12 @@ def test_click_that_is_refused_while_the_earlier_goal_is_cancelled_says_nothing_
 
 
 def test_status_tells_of_the_newest_goal(system):
-    system.bridge.report()
+    system.bridge.publish_state()
     system.bridge.replace_goal(Point(1.0, 0.0, 0.0), PoseStamped())
     system.feedback(GoToPositionFeedback(0.5, 0.1, "driving"))
-    system.bridge.report()
+    system.bridge.publish_state()
     system.ended, system.ending = True, "SUCCEEDED: REACHED: so"
-    system.bridge.report()
+    system.bridge.publish_state()
     system.bridge.replace_goal(Point(2.0, 0.0, 0.0), PoseStamped())
     assert [text.replace("goal x 0.00 y 0.00 in map", "goal") for text in system.statuses] == [
         "robocop_goto_as is ready, no goal yet",
@@ -169,5 +171,5 @@ def test_status_tells_of_the_newest_goal(system):
 
 
 def test_status_is_reported_periodically_and_frames_and_timeout_are_those_of_the_transforms(system):
-    assert system.timers == [(BridgeParams().status_period, system.bridge.report)]
+    assert system.timers == [(BridgeParams().status_period, system.bridge.publish_state)]
     assert system.transforms == [("odom", "map", BridgeParams().transform_timeout)]

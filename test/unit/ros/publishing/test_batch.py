@@ -15,7 +15,7 @@ from subscriber_links import LONG, SHORT, received
 
 from aro_robocop_goto_as.ros.publishing.batch import Batch
 from aro_robocop_goto_as.ros.publishing.packed import PackedMessage, counter
-from aro_robocop_goto_as.ros.publishing.subscriber_link import SubscriberLink
+from aro_robocop_goto_as.ros.publishing.publisher import SubscriberLink
 
 MANY = 10_000  # messages of 500 bytes, more than any socket's buffer holds
 READ_TIMEOUT = 60.0  # [s, wall] for a thread that reads

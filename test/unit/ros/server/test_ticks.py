@@ -12,7 +12,7 @@ from rosgraph_msgs.msg import Clock
 from aro_robocop_goto_as.geometry import Twist2D
 from aro_robocop_goto_as.ros.server import ticks
 from aro_robocop_goto_as.ros.server.ticks import Ticks
-from aro_robocop_goto_as.simulation.schedule import stamp_ns
+from aro_robocop_goto_as.simulation.agenda import stamp_ns
 
 MS = 1_000_000  # [ns]
 

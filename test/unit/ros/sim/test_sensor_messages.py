@@ -25,7 +25,7 @@ from aro_robocop_goto_as.ros.sim import sensor_messages as packed
 from aro_robocop_goto_as.ros.sim.step_topics import StepTopics, packed_clock
 from aro_robocop_goto_as.sensors.bumper import Bumper
 from aro_robocop_goto_as.sensors.imu import ImuParams
-from aro_robocop_goto_as.sensors.lidar_profiles import PROFILES
+from aro_robocop_goto_as.sensors.lidar import PROFILES
 
 NUMBER = st.floats(-1e6, 1e6)
 POSE = st.builds(Pose2D, NUMBER, NUMBER, st.floats(-3.0, 3.0))

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aro_robocop_goto_as.simulation.schedule import due, due_next, stamp_ns
+from aro_robocop_goto_as.simulation.agenda import due, due_next, stamp_ns
 
 
 @given(st.integers(1, 240), st.integers(0, 10**6))

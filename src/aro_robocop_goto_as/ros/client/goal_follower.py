@@ -25,7 +25,7 @@ def ending(state: int, message: str, text: str) -> str:
     return words if words.startswith(f"{STATES[state]}:") else ": ".join(filter(None, (STATES[state], words)))
 
 
-class Follower:
+class GoalFollower:
     """Sends goals by SimpleActionClient, and follows the newest one to its end."""
 
     def __init__(self, action: str, on_feedback: Callable[[GoToPositionFeedback], None]) -> None:

@@ -9,8 +9,8 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from aro_robocop_goto_as.msg import GoToPositionResult
 
-from aro_robocop_goto_as.ros.client import follower
-from aro_robocop_goto_as.ros.client.follower import Follower, ending
+from aro_robocop_goto_as.ros.client import goal_follower
+from aro_robocop_goto_as.ros.client.goal_follower import GoalFollower, ending
 
 
 class Client:
@@ -30,8 +30,8 @@ def follow(monkeypatch):
     """Make a follower with this client."""
 
     def follow(client):
-        monkeypatch.setattr(follower.actionlib, "SimpleActionClient", lambda *_: client)
-        return Follower("goto", lambda feedback: None)
+        monkeypatch.setattr(goal_follower.actionlib, "SimpleActionClient", lambda *_: client)
+        return GoalFollower("goto", lambda feedback: None)
 
     return follow
 

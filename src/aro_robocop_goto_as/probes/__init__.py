@@ -1,1 +1,0 @@
-"""Looks at the machine, with Python's standard library only, because ./robocop does so before anything is installed."""
