@@ -19,7 +19,7 @@ WENT_WRONG = (
 
 
 def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Record], List[str], List[str]]:
-    """The record that counts for each scenario, the names of scenarios whose repetition counts, and what to say.
+    """The record that counts for each scenario, the names of scenarios whose repetition counts, and notes.
 
     A repetition counts if a check fails in it as well. It also counts if an earlier mistake may have left something
     behind in the first node: a check fails in a scenario before this one, or in any scenario with several goals.
@@ -29,7 +29,7 @@ def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Recor
     repeated = [name for name in chosen if name + AGAIN in records]
     best = {name: records.get(name + AGAIN, record) for name, record in chosen.items()}
     order, counted = plan.scenarios_of("server"), []
-    told: Dict[str, List[str]] = {}  # names of scenarios, by what to say of them
+    about: Dict[str, List[str]] = {}  # names of scenarios, by what a note says of them
     failing = [it for it in best if _fails(plan, best[it])] if repeated else []
     for name in repeated:
         mistakes = [it for it in failing if it != name]
@@ -38,8 +38,8 @@ def counting(plan: Plan, records: Mapping[str, Record]) -> Tuple[Dict[str, Recor
             chosen[name] = replace(best[name], name=name)
             counted.append(name)
         if name not in failing:
-            told.setdefault(LEFT_BEHIND if is_left_behind else WENT_WRONG, []).append(name)
-    return chosen, counted, [f"failed {words}: {', '.join(names)}" for words, names in told.items()]
+            about.setdefault(LEFT_BEHIND if is_left_behind else WENT_WRONG, []).append(name)
+    return chosen, counted, [f"failed {words}: {', '.join(names)}" for words, names in about.items()]
 
 
 def _fails(plan: Plan, record: Record) -> bool:

@@ -12,7 +12,7 @@ class Faults:
     """The exceptions of one grading."""
 
     def __init__(self) -> None:
-        self.told: List[str] = []  # a sentence for each
+        self.problems: List[str] = []  # a sentence for each
         self.tracebacks: List[str] = []
 
     def tried(self, what: str, otherwise: T, function: Callable[..., T], *arguments: Any) -> T:
@@ -20,7 +20,7 @@ class Faults:
         try:
             return function(*arguments)
         except Exception as error:
-            self.told.append(f"the grader failed at {what}: {error!r}; its traceback is in {FILE}")
+            self.problems.append(f"the grader failed at {what}: {error!r}; its traceback is in {FILE}")
             self.tracebacks.append(f"{what}\n{traceback.format_exc()}")
             return otherwise
 

@@ -35,14 +35,14 @@ def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = Fa
         for script in (script for script in submission.scripts if plan.examines(script.part)):
             recorded = runner.run(submission, script, Path(work, script.part))
             records[script.part], problems[script.part] = recorded.records, recorded.problem
-            notes += [f"{script.part}: {it}" for it in recorded.told]
+            notes += [f"{script.part}: {it}" for it in recorded.notes]
             missing += [
                 f"{script.part}: {it}" for it in _missing_modules(recorded.records, script.path.name, submission.beside)
             ]
         judged = completed(judge.judge(submission.name, plan, records, problems), plan)
-        told = dict.fromkeys([*judged.notes, *notes, *submission.notes])
+        distinct = dict.fromkeys([*judged.notes, *notes, *submission.notes])
         judged = replace(
-            judged, files=tuple(submission.files), problems=(*judged.problems, *missing), notes=tuple(told)
+            judged, files=tuple(submission.files), problems=(*judged.problems, *missing), notes=tuple(distinct)
         )
         folder.mkdir(parents=True, exist_ok=True)
         for part in PARTS:

@@ -95,7 +95,7 @@ class Grade:
     name: str
     checks: Tuple[CheckResult, ...]
     problems: Tuple[str, ...] = ()  # that kept parts of it from being run
-    notes: Tuple[str, ...] = ()  # advice and remarks, which cost no points
+    notes: Tuple[str, ...] = ()  # which cost no points
     files: Tuple[str, ...] = ()  # which ones were graded, in words
     tracebacks: Tuple[str, ...] = ()  # of exceptions in the grader
 

@@ -40,7 +40,7 @@ def judge(name: str, plan: Plan, records: Records, problems: Mapping[str, str]) 
         own = [check for check in checks if check.part == part]
         said = faults.tried(f"notes about the {part}", nothing, _notes, by_name, plan, own)
         notes += [f"{part}: {it}" for it in dict.fromkeys(said)]
-    return Grade(name, tuple(checks), (*found, *faults.told), tuple(notes), tracebacks=tuple(faults.tracebacks))
+    return Grade(name, tuple(checks), (*found, *faults.problems), tuple(notes), tracebacks=tuple(faults.tracebacks))
 
 
 def _notes(records: Mapping[str, Record], plan: Plan, checks: Sequence[CheckResult]) -> List[str]:

@@ -38,7 +38,7 @@ class Recorded:
 
     records: Dict[str, rec.Record]
     problem: str = ""
-    told: Sequence[str] = ()  # notes for the report about scenarios that were repeated
+    notes: Sequence[str] = ()  # for the report, about scenarios that were repeated
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Runner:
         ends = [end for record in run.records.values() for end in record.node_ends]
         if kernel_kills() > kills and any(end.is_unexplained for end in ends):
             raise UngradableError(f"{job.part}: the machine ran out of memory")
-        records, counted, told = counting(self.plan, run.records)
+        records, counted, notes = counting(self.plan, run.records)
         for name in counted:
             (job.out / f"{job.part}-{name}{AGAIN}.bag").replace(job.out / f"{job.part}-{name}.bag")
-        return Recorded(records, problem, told)
+        return Recorded(records, problem, notes)

@@ -11,7 +11,7 @@ import types
 from pathlib import Path
 from typing import Any
 
-NAME = "robocop_agent"
+PACKAGE = "robocop_agent"
 FILE_INPUT, CLOSES = 257, 1  # Py_file_input; whether the file is closed
 
 
@@ -19,10 +19,10 @@ def load() -> Any:
     """This folder as a package with a name of its own: nothing else of the grader's comes into the node's path."""
     folder = Path(__file__).resolve().parent
     spec = importlib.util.spec_from_file_location(
-        NAME, folder / "__init__.py", submodule_search_locations=[str(folder)]
+        PACKAGE, folder / "__init__.py", submodule_search_locations=[str(folder)]
     )
     assert spec is not None and spec.loader is not None
-    module = sys.modules[NAME] = importlib.util.module_from_spec(spec)
+    module = sys.modules[PACKAGE] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
 

@@ -18,9 +18,9 @@ STARTING_TIME = 20.0  # until all its threads wait for the first time; ROS and N
 REQUEST_TIME = 0.5  # per request of the grader after that
 LOOP_TIME = 0.002  # per request, after MAX_OVERRUNS requests in a row used all of their time: a loop without pauses
 AFTER_LOOP_TIME = 0.2  # per request, after such a loop has ended
-TURN = 0.05  # of the thread whose turn it is, before it moves to the background
+MAX_TURN = 0.05  # of the thread whose turn it is, before it moves to the background
 MAX_OVERRUNS = 3  # requests in a row
-MANY = 100  # wake-ups of threads between two looks at the processor time
+WAKE_UPS_PER_LOOK = 100  # wake-ups of threads between two looks at the processor time
 MAX_POLL_PERIOD = 0.005  # [s, wall] between two looks at the processor time
 _recv_with_gil = ctypes.PyDLL(None).recv  # PyDLL does not release the interpreter's lock
 
@@ -166,7 +166,7 @@ class RequestLoop:
             nothing_runs = idle or (asleep is not None and not scheduler.move_to_background(asleep))
             if nothing_runs or scheduler.only_background_runs():
                 if files.wake():
-                    if count % MANY:
+                    if count % WAKE_UPS_PER_LOOK:
                         continue
                 elif nothing_runs and not stuck.children.busy:
                     self._budget.reset()
@@ -178,7 +178,7 @@ class RequestLoop:
             started = min(started, used)
             if turn != scheduler.turns:
                 turn, turn_started = scheduler.turns, used
-            if used - turn_started > TURN and (files.wake() or scheduler.queue):
+            if used - turn_started > MAX_TURN and (files.wake() or scheduler.queue):
                 scheduler.move_to_background(set(scheduler.running))
             if used - started > self._budget.time:
                 scheduler.move_to_background(set(scheduler.running))

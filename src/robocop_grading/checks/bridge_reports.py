@@ -11,9 +11,9 @@ from ..record import ACTIVE, LOST, PENDING, STATUS_NAMES, Line, Record
 from .verdict import Failed, Kind
 
 SAME_REPORT = 0.15  # [s] lines within this time of a report's first line belong to it
-NAME = re.compile(rf"\b(?:{'|'.join(STATUS_NAMES)})\b")
+STATE_NAME = re.compile(rf"\b(?:{'|'.join(STATUS_NAMES)})\b")
 STATE = re.compile(  # its name or number
-    rf"{NAME.pattern}|\b(?:state|status|stav)\b\D{{0,5}}\b[0-9]\b|^published on \S+: [0-9]$", re.IGNORECASE
+    rf"{STATE_NAME.pattern}|\b(?:state|status|stav)\b\D{{0,5}}\b[0-9]\b|^published on \S+: [0-9]$", re.IGNORECASE
 )
 # How a recorded line begins: as rospy writes it to a terminal, as recorded from /rosout, or a published report.
 BEGIN = re.compile(r"^(?:\x1b\[[\d;]*m)*(?:\[ *[A-Z]+\] ?(?:\[[\d., ]+\]:? ?)?|published on \S+: )?")
@@ -100,7 +100,7 @@ def _report(lines: Sequence[Line]) -> Report:
     for line in lines:
         found = WORD.findall(_content(line).lower())
         words.update(zip(found), zip(found, found[1:]))
-    return Report(lines[0].time, {name for line in lines for name in NAME.findall(line.text)}, words)
+    return Report(lines[0].time, {name for line in lines for name in STATE_NAME.findall(line.text)}, words)
 
 
 def _state_intervals(record: Record) -> List[StateInterval]:

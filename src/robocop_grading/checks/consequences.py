@@ -7,11 +7,11 @@ from ..handout import GOAL_RADIUS, HEADING_TOLERANCE
 from ..record import Command, Feedback, Record, Sample, SentGoal
 from .endings import at_once
 from .output import NO_STATE_LOGGED, UNCAUGHT, logged
+from .turning import ENOUGH
 from .verdict import Failed, Kind
 
 T = TypeVar("T", Feedback, Sample)
 MARGIN = 0.03  # [rad] nearer to the handout's threshold both turning and driving are right
-ENOUGH = 4  # fewer commands show nothing
 MAX_OTHERS = 0.2  # share of commands that may not match, as those at the end of a turn
 NEAR_GOAL = 1.2 * GOAL_RADIUS  # [m]
 SLOW = 4.0  # [Hz] of commands, at which a server reacts late

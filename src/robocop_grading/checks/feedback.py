@@ -14,7 +14,7 @@ from .topic_use import late, unpublished
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 AGE = 0.35  # [s] allowed age of a node's data: an odometry period, a tick of its loop and a tick of the recording
-NEAR = 0.15  # [m] closer than this, the direction to the goal is not compared
+MIN_COMPARED_DISTANCE = 0.15  # [m] closer than this, the direction to the goal is not compared
 INEXACT = 0.02  # [m] of the position in /odom, which turns the direction of a goal that is near
 MAX_WRONG = 0.1  # allowed share of wrong messages: single ones occur when a turn ends
 MAX_WRONG_TIME = 0.25  # [s] messages that are wrong one after the other for so long are no transition
@@ -80,12 +80,12 @@ def _compared(index: int, record: Record) -> List[Pair]:
         samples = record.samples_between(message.time - AGE, message.time + 1e-3)
         if message.id in goals and samples:
             pairs.append(Pair(message, samples, goals[message.id], starts[message.id][0], record.started))
-    return [pair for pair in pairs if index == POSITION or pair.truth[POSITION] > NEAR]
+    return [pair for pair in pairs if index == POSITION or pair.truth[POSITION] > MIN_COMPARED_DISTANCE]
 
 
 def _deviation(index: int, pair: Pair) -> float:
     """Distance [m], [rad] of an error from the interval of recent true values; infinity for NaN."""
-    inexact = INEXACT / max(NEAR, pair.truth[POSITION]) if index == ANGLE else 0.0
+    inexact = INEXACT / max(MIN_COMPARED_DISTANCE, pair.truth[POSITION]) if index == ANGLE else 0.0
     return misses(index, [pair], lambda it: it.truth[index])[0] - inexact
 
 

@@ -9,10 +9,10 @@ from ..record import Record, SentGoal
 from .feedback_hypotheses import ANGLE
 
 AGES = np.arange(0.0, 3.005, 0.01)  # [s] of the pose that feedback may be of
-OLD = 0.085  # [s] a server that waits for odometry and then for a scan is 0.07 s late; an iteration is 0.1 s
-MANY = 0.4  # share of old messages; half of them are old if each value is sent twice
-MOVING = 10  # fewer messages say nothing about their age
-CHANGED, WINDOW = 0.02, 0.3  # [m] or [rad], and [s]: the true error of a robot that moves changes by more in that time
+MIN_AGE = 0.085  # [s] a server that waits for odometry and then for a scan is 0.07 s late; an iteration is 0.1 s
+MAX_OLD = 0.4  # share of old messages; half of them are old if each value is sent twice
+MIN_MOVING = 10  # fewer messages say nothing about their age
+CHANGED, CHANGE_TIME = 0.02, 0.3  # [m] or [rad], [s]: the true error changes by more while the robot moves
 FITS = 0.03  # [m], [rad] larger mean differences are of values that were never true
 MAX_DIFFERENCE = 0.2  # [m], [rad] larger differences count as this
 
@@ -26,15 +26,15 @@ def age_of(records: Sequence[Record], index: int) -> float:
     differences = np.concatenate([np.zeros((0, len(AGES))), *(rows for rows, _, _ in each)])
     held = np.concatenate([np.zeros(0), *(times for _, times, _ in each)])
     moving = np.concatenate([np.zeros(0, dtype=bool), *(those for _, _, those in each)])
-    if moving.sum() < MOVING:
+    if moving.sum() < MIN_MOVING:
         return 0.0
     means = differences.mean(axis=0)  # also of a robot at rest: values that are wrong there are not merely old
     best = int(means.argmin())
     if means[best] > FITS:
         return 0.0
-    if AGES[best] >= OLD and means[best] <= 0.5 * means[0]:
+    if AGES[best] >= MIN_AGE and means[best] <= 0.5 * means[0]:
         return float(AGES[best])
-    return float(np.quantile(held[moving], 0.95)) if (held[moving] > OLD).mean() > MANY else 0.0
+    return float(np.quantile(held[moving], 0.95)) if (held[moving] > MIN_AGE).mean() > MAX_OLD else 0.0
 
 
 def _differences(record: Record, goal: SentGoal, index: int) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -49,7 +49,7 @@ def _differences(record: Record, goal: SentGoal, index: int) -> Tuple[np.ndarray
     truth = np.array([goal.errors_at(sample)[index] for sample in samples])
     truth = np.unwrap(truth) if index == ANGLE else truth
     sampled = [sample.time for sample in samples]
-    moved = np.interp(times, sampled, truth) - np.interp(times - WINDOW, sampled, truth)
+    moved = np.interp(times, sampled, truth) - np.interp(times - CHANGE_TIME, sampled, truth)
     moving = np.abs(moved) > CHANGED
     runs = np.cumsum((np.diff(values, prepend=math.nan) != 0.0) | ~moving)
     first = times[np.searchsorted(runs, runs)]

@@ -15,7 +15,7 @@ MAX_UNFITTED_TIME = 0.45  # [s] longest row of values that may not fit
 MAX_UNEXPLAINED = 0.3  # share of all wrong values
 MAX_PAIRS = 100  # of a scenario that are compared
 LARGE = 7.0  # [m], [rad] larger values are squared or in degrees; the tolerances are then ten times as large
-FAR = 1.0  # [m], [rad] a larger miss counts as this
+MAX_MISS = 1.0  # [m], [rad] a larger miss counts as this
 UNITS = ("m", "rad")
 MAX_MEAN = 0.015  # [m], [rad] mean miss of a hypothesis; true ones have less than half of it
 
@@ -95,4 +95,4 @@ def misses(index: int, pairs: Sequence[Pair], predict: Callable[[Pair], float], 
 
 def _mean(scenarios: Sequence[Sequence[float]]) -> float:
     """The mean, in which a single value counts for little, however far off it is."""
-    return mean(min(miss, FAR) for misses in scenarios for miss in misses)
+    return mean(min(miss, MAX_MISS) for misses in scenarios for miss in misses)

@@ -93,7 +93,7 @@ POSE_OF_START = (
     "The errors stay those of where the robot is when the goal comes: is the newest pose taken in each iteration, and "
     "does the callback of /odom store each pose at once?"
 )
-LEFT_OUT = (
+POSITION_LEFT_OUT = (
     "The errors are those from odom's origin: is the robot's position left out, read only at the start, or not stored "
     "at once by the callback of /odom?"
 )
@@ -147,7 +147,7 @@ CAUSES: Tuple[Cause, ...] = (
         "The robot's pose is taken in the world or map frame; goals are in odom",
         lambda p: p.goal.errors_at(Pose2D(p.now.world_x, p.now.world_y, p.now.world_yaw)),
     ),
-    *_misplaced(LEFT_OUT, lambda p: p.goal.errors_at(Pose2D(0.0, 0.0, p.yaw)), unchanged=True),
+    *_misplaced(POSITION_LEFT_OUT, lambda p: p.goal.errors_at(Pose2D(0.0, 0.0, p.yaw)), unchanged=True),
     Cause(DIRECTION_ONCE, ANGLE, lambda p: p.goal.errors_at(p.start)[ANGLE] + p.start.yaw - p.yaw),
     Cause(NO_HEADING, ANGLE, lambda p: p.direction, unchanged=True),
     *(Cause(sentence, POSITION, formula) for sentence, formula in OF_POSITION.items()),

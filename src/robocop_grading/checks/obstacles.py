@@ -14,8 +14,8 @@ from .topic_use import late, unpublished
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 SCAN_TOPIC = re.compile("scan|laser|lidar")  # in its name
-MARGIN = 0.03  # [m] of noise, and of a first command before the distance is known
-FAR = 0.1  # [m] beyond the limit: no threshold that is a little too large explains that
+DISTANCE_NOISE = 0.03  # [m] of noise, and of a first command before the distance is known
+FAR_BEYOND = 0.1  # [m] beyond the limit: no threshold that is a little too large explains that
 ABORTED_FAR = (
     f"The goal was aborted farther than {STOP_DISTANCE:g} m from the obstacle: is the threshold wrong, do beams "
     "count that are not ahead, or does something else abort the goal?"
@@ -93,7 +93,7 @@ def _approach(record: Record, goal: SentGoal) -> Optional[Failed]:
     before = [sample.ahead for sample in record.samples_between(goal.time - 0.15, goal.time)]
     after = record.samples_between(goal.time, record.active_until(goal))
     nearest = min((sample.ahead for sample in after), default=math.inf)
-    if not before or before[-1] >= STOP_DISTANCE - MARGIN or nearest >= before[-1] - MARGIN:
+    if not before or before[-1] >= STOP_DISTANCE - DISTANCE_NOISE or nearest >= before[-1] - DISTANCE_NOISE:
         return None
     wanted, seen = f"an abort at {before[-1]:.2f} m", f"{nearest:.2f} m ahead of it"
     cause = (
@@ -124,7 +124,7 @@ def odd_scans(record: Record, limits: Limits) -> Verdict:
         return problem
     hint = ""
     end = problem.time
-    far = all(it.ahead > limits.abort_farthest + FAR for it in record.samples_between(end - AT_END, end))
+    far = all(it.ahead > limits.abort_farthest + FAR_BEYOND for it in record.samples_between(end - AT_END, end))
     if problem.kind is Kind.ABORTED or (problem.kind is Kind.TOO_EARLY and far):  # not by another threshold
         hint = "A range of 0 or NaN is treated as an obstacle"
     elif wanted == ABORTED and problem.kind in (Kind.SUCCEEDED, Kind.NO_RESULT, Kind.TOO_FAR):

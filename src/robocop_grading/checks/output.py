@@ -30,7 +30,7 @@ UNCAUGHT = re.compile(
 PLACE = re.compile(r'File "([^"]{1,500})", line (\d+)')  # in a traceback
 # The path of a file that is not the node's: of a library, or of the agent under which it runs.
 LIBRARY = re.compile(r"^<|/(dist|site)-packages/|/lib/python3|/opt/ros/|/robocop_grading/agent/")
-FOLDER = re.compile(r"(?<=in file ).*/([^/]+ on line \d)")  # in Python's words for a file that is not UTF-8
+PATH_IN_ERROR = re.compile(r"(?<=in file ).*/([^/]+ on line \d)")  # in Python's words for a file that is not UTF-8
 INFORMATION = re.compile(r"(\x1b\[\d*m)*\[ *(INFO|DEBUG)\b")  # as rospy begins such a line, in a terminal or a log
 UNKNOWN_TYPE = re.compile("Type .{1,100} if not loaded or supported")  # in tf2's words
 NOT_IMPORTED = "tf2 can transform messages of geometry_msgs only after: import tf2_geometry_msgs"
@@ -71,7 +71,7 @@ def last_error(record: Record, until: float = math.inf) -> str:
         for number in reversed(errors):
             place = _place(lines[max(0, number - TRACEBACK) : number], only_own)
             if place or not only_own:
-                error = FOLDER.sub(r"\1", lines[number])[:200] + place
+                error = PATH_IN_ERROR.sub(r"\1", lines[number])[:200] + place
                 return sentences(error, NOT_IMPORTED) if UNKNOWN_TYPE.search(error) else error
     others = [line for line in lines if not INFORMATION.match(line)]
     if not others:
@@ -84,7 +84,7 @@ def first_error(lines: Sequence[str]) -> str:
     texts = [text for line in lines for text in line.splitlines() if text.strip()]
     ends = [texts[number].strip() for number in _ends(texts)]
     begins_with_one = any("Traceback" in text for text in texts[:2])
-    return FOLDER.sub(r"\1", ends[0] if ends and begins_with_one else texts[0])[:200]
+    return PATH_IN_ERROR.sub(r"\1", ends[0] if ends and begins_with_one else texts[0])[:200]
 
 
 def _ends(lines: Sequence[str]) -> Iterator[int]:

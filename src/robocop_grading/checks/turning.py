@@ -9,13 +9,13 @@ from ..record import Command, Record, SentGoal
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
-NEAR = 0.2  # [m] closer than this, the direction to the goal changes fast
+MIN_GOAL_DISTANCE = 0.2  # [m] closer than this, the direction to the goal changes fast
 MAX_WRONG = 0.1  # share of wrong commands that is allowed for transitions
 LONG_IDLE = 10  # commands that neither turn nor drive near the right heading; more are wrong whatever the threshold
 ENOUGH = 4  # fewer commands are not judged
 MIN_SPEED = 1e-3  # [m/s], [rad/s] slower commands are none
-TURN = f"{HEADING_TOLERANCE:g} rad"
-NOT_DRIVING = f"linear.x 0 while angle_error is beyond {TURN}"
+TOLERANCE = f"{HEADING_TOLERANCE:g} rad"
+NOT_DRIVING = f"linear.x 0 while angle_error is beyond {TOLERANCE}"
 
 
 class Situation(NamedTuple):
@@ -44,7 +44,8 @@ def _situations(record: Record, goal: SentGoal, low: float, high: float) -> List
         if not goal.time + WINDOW < command.time < end:
             continue
         errors = [goal.errors_at(sample) for sample in record.samples_between(command.time - WINDOW, command.time)]
-        if len(errors) >= 4 and all(low <= abs(angle) <= high and distance > NEAR for distance, angle in errors):
+        fits = (low <= abs(angle) <= high and distance > MIN_GOAL_DISTANCE for distance, angle in errors)
+        if len(errors) >= 4 and all(fits):
             situations.append(Situation(command, errors[-1][1]))
     return situations
 
@@ -94,10 +95,10 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
         if sum(abs(it.command.w) < MIN_SPEED for it in driving) > 0.5 * len(driving):
             cause = (
                 f"Once it has turned to the goal, the robot drives on at {angle:.2f} rad without turning again: "
-                f"compare angle_error with {TURN} in each iteration, because the heading changes while it drives"
+                f"compare angle_error with {TOLERANCE} in each iteration, because the heading changes while it drives"
                 if command.time > aligned
                 else f"The robot drives straight, with linear.x {command.v:.2f}, at an angle_error of {angle:.2f} rad: "
-                f"beyond {TURN} it has to turn first"
+                f"beyond {TOLERANCE} it has to turn first"
             )
         seen = f"linear.x {command.v:.2f} at {angle:.2f} rad"
         return Failed(NOT_DRIVING, seen, command.time, cause)
@@ -150,7 +151,7 @@ def _not_forward(aligned: Sequence[Situation], driving: Sequence[Situation]) -> 
     standing = [it for it in aligned if abs(it.command.v) <= 1e-3]
     for wrong, situations, seen, cause in (
         (backward, driving, "below 0", "The robot drives backward: linear.x has to be positive"),
-        (standing, aligned, "0", f"The robot heads for the goal but does not drive: linear.x is 0 within {TURN}"),
+        (standing, aligned, "0", f"The robot heads for the goal but does not drive: linear.x is 0 within {TOLERANCE}"),
     ):
         if len(situations) >= ENOUGH and len(wrong) > 0.3 * len(situations):
             command, angle = wrong[0]

@@ -28,13 +28,13 @@ START_TIMEOUT = 20.0  # [s] for the node's first connection
 CONNECT_TIMEOUT = 10.0  # [s] for its client to find the server
 REACTION_TIME = 3.0  # [s] for a click to become a goal
 STATUS_TICKS = 2  # from one status message to the next, which is actionlib's 5 Hz
-BEFORE, SECOND = (1.24, -0.43), (-0.57, 0.86)  # [m] clicks in odom; a bridge that rounds them loses 0.04 m
+FIRST_CLICK, SECOND_CLICK = (1.24, -0.43), (-0.57, 0.86)  # [m] clicks in odom; a bridge that rounds them loses 0.04 m
 # The goals after the first one: the click, for how long [s] its goal is active, how it ends, and how long [s] the next
 # click takes to come. The last click comes while a server's status still begins with the goal before.
 LATER_GOALS = (
-    (SECOND, 5.0, rec.ABORTED, 9.0),
-    (SECOND, 2.0, rec.PREEMPTED, 0.4),
-    (BEFORE, 5.0, rec.PREEMPTED, 3.0),
+    (SECOND_CLICK, 5.0, rec.ABORTED, 9.0),
+    (SECOND_CLICK, 2.0, rec.PREEMPTED, 0.4),
+    (FIRST_CLICK, 5.0, rec.PREEMPTED, 3.0),
 )
 # Types in which a bridge may report the goal's state: text, actionlib's states and their numbers. Not GoalStatusArray,
 # which any action server sends by itself, and not floats, which may be anything.
@@ -180,7 +180,7 @@ class BridgeRun(Run):
         self.marks["listeners"] = float(self.topics.node_subscribes_to(CLICK_TOPIC))
         self.marks["clients"] = float(self.topics.node_publishes(f"{ACTION}/goal"))
         limits = self.plan.limits
-        first = (BEFORE, limits.status_span + limits.status_period / 2.0, rec.SUCCEEDED, 6.0)
+        first = (FIRST_CLICK, limits.status_span + limits.status_period / 2.0, rec.SUCCEEDED, 6.0)
         for click, active, status, after in (first, *LATER_GOALS):
             self._send_click("odom", *click)
             self._watch_reports(active)
@@ -212,9 +212,9 @@ class BridgeRun(Run):
     def _replace(self) -> None:
         """Send a click, and a second click while the first goal is active."""
         self._begin("replace")
-        self._send_click("odom", *BEFORE)
+        self._send_click("odom", *FIRST_CLICK)
         self.settle(2.0)
-        self._send_click("odom", *SECOND)
+        self._send_click("odom", *SECOND_CLICK)
         self.settle(2.0)
         self.finish("replace")
 

@@ -10,7 +10,7 @@ from ..errors import GraderLostError
 MAX_FRAME = 8 * 1024**2  # bytes
 MAX_UNSENT = 16 * 1024**2  # bytes that the node does not read
 READ = 1 << 18  # bytes
-UNREADABLE = "the node's answer to the grader can't be read"
+UNREADABLE_ANSWER = "the node's answer to the grader can't be read"
 NOT_READ = "the node does not read the answers of the services that it calls"
 
 
@@ -53,7 +53,7 @@ class Channel:
             size, kind = wire.HEAD.unpack_from(self._unread)
             end = wire.HEAD.size + size
             if size > MAX_FRAME:
-                raise GraderLostError(UNREADABLE)
+                raise GraderLostError(UNREADABLE_ANSWER)
             if len(self._unread) < end:
                 return
             body = bytes(self._unread[wire.HEAD.size : end])

@@ -15,7 +15,7 @@ from ..errors import GraderLostError
 from ..sandbox.guard import Guard
 from ..sandbox.limits import MAX_IDLE, MIN_WORK
 from ..submission import CHANNEL
-from .channel import UNREADABLE, Channel
+from .channel import UNREADABLE_ANSWER, Channel
 from .job import Job
 from .output import Output
 from .services import Services
@@ -23,7 +23,7 @@ from .topics import Topics
 
 NEVER = 1 << 62  # [ns]
 MAX_LAST_READS = 1000  # reads after a node has ended; a child of it may go on sending
-POLL = 0.005  # [s, wall] between two looks at other things while the node's answer is waited for
+POLL_PERIOD = 0.005  # [s, wall] between two looks at other things while the node's answer is waited for
 ROS_PARAMETERS = {
     "/use_sim_time": True,
     # rospy asks the master for it with every line it logs, unless it is set.
@@ -129,7 +129,8 @@ class Node:
             idle += not has_more
             if self._guard.used > used + MIN_WORK:
                 used, idle = self._guard.used, 0
-            if idle * POLL > MAX_IDLE:  # not by a clock: on a busy machine it may be the grader that does not run
+            # Not by a clock: on a busy machine it may be the grader that does not run.
+            if idle * POLL_PERIOD > MAX_IDLE:
                 did = "stopped answering" if self._channel.is_open else "closed its connection to"
                 self._ended_because = f"it {did} the grader, which has ended it"
                 self.end()
@@ -157,15 +158,15 @@ class Node:
             elif kind == wire.TOPICS:
                 self._topics.update_node_topics(body)
             else:
-                raise GraderLostError(UNREADABLE)
+                raise GraderLostError(UNREADABLE_ANSWER)
         except (struct.error, UnicodeError) as error:
-            raise GraderLostError(UNREADABLE) from error
+            raise GraderLostError(UNREADABLE_ANSWER) from error
 
     def _has_more(self) -> bool:
         """Wait a moment; return whether the node has sent something. What it prints is read meanwhile."""
         channel: List[Any] = [self._channel] if self._channel.is_open else []  # a closed one would always be ready
         output: List[Any] = [self._output] if self._output.is_open else []
-        ready, writable, _ = select.select(channel + output, channel if self._channel.unsent else [], [], POLL)
+        ready, writable, _ = select.select(channel + output, channel if self._channel.unsent else [], [], POLL_PERIOD)
         if self._output in ready:
             self._output.read()
         if writable:

@@ -25,7 +25,7 @@ from .services import Services
 from .stage import Stage
 from .topics import NodeTopic
 
-MAX_ENTRIES = 50  # of each kind at one tick
+MAX_PER_TICK = 50  # of each kind at one tick
 MAX_PRINTED = 2_000_000  # characters of lines in one record; as many at one tick, as a traceback comes at once
 SHORT = 100  # characters; a shorter line counts as one of this length
 
@@ -88,8 +88,8 @@ class Run:
         return record
 
     def add(self, field: str, entry: Any) -> None:
-        """Record an entry; if there are very many at one tick, only the first MAX_ENTRIES are recorded."""
-        if len(self.entries[field]) - self._before[field] < MAX_ENTRIES:
+        """Record an entry; if there are very many at one tick, only the first MAX_PER_TICK are recorded."""
+        if len(self.entries[field]) - self._before[field] < MAX_PER_TICK:
             self.entries[field].append(entry)
 
     def action_fields(self, suffix: str) -> Dict[str, Any]:

@@ -21,11 +21,11 @@ from ..agent import wire
 from ..errors import GraderLostError
 from ..handout import ACTION
 
-NAME = "/robocop_sim"  # of the grader's node
+SIMULATOR_NODE = "/robocop_sim"  # of the grader's node
 MAX_WAITING, MAX_DECODED = 20_000, 16 * 1024**2  # messages, and their bytes, in one turn; further ones are dropped
 MAX_LISTED = 100  # entries of a message's list
 MAX_TOPICS, MAX_NAME = 1000, 200  # of a node, and characters of a name
-MAX_BYTES = 16 * 1024**2  # of a topic's stream that are no whole message
+MAX_STREAM = 16 * 1024**2  # of a topic's stream that are no whole message
 
 Handler = Callable[[Any], object]
 
@@ -72,7 +72,7 @@ class _Heard(_Topic):
             start = end
             yield bytes(self.stream[body:end])
         del self.stream[:start]
-        if len(self.stream) > MAX_BYTES:
+        if len(self.stream) > MAX_STREAM:
             self.stream.clear()
 
 
@@ -92,7 +92,7 @@ def trimmed(message: Any) -> Any:
 def header(kind: Any, **more: str) -> Dict[str, str]:
     """The header with which a connection begins."""
     text = {"message_definition": kind._full_text} if hasattr(kind, "_full_text") else {}
-    return {"callerid": NAME, "type": kind._type, "md5sum": kind._md5sum, **text, **more}
+    return {"callerid": SIMULATOR_NODE, "type": kind._type, "md5sum": kind._md5sum, **text, **more}
 
 
 def _renamed(topic: str, action: str, other: str) -> str:
