@@ -197,7 +197,7 @@ def test_local_scheduler_rejects_another_users_client_without_the_key_of_the_run
         address = client.scheduler.address
         assert address.startswith("tls://127.0.0.1:")
         done = subprocess.run(
-            [*other, "/usr/bin/python3", "-c", STRANGER, address.split(":")[-1]],
+            [*other, "/usr/bin/python3", "-I", "-c", STRANGER, address.split(":")[-1]],
             capture_output=True,
             text=True,
             timeout=TIMEOUT,

@@ -77,7 +77,7 @@ def test_more_robots_than_there_is_room_for_are_refused(burger):
 
 def _start_in_map(model="burger", **params):
     """Where the robots of these parameters start in the map of a YAML file."""
-    p = SimParams.of(model=model, **params).robots  # type: ignore[arg-type]
+    p = SimParams.of(model=model, **params).robots
     return lambda path: [robot.spawn for robot in robots_from(p, load_world(path), model_named)]
 
 

@@ -1,7 +1,6 @@
 """The clearance ahead as a pure function of a scan."""
 
 import math
-from typing import List, Tuple
 
 import numpy as np
 import pytest
@@ -19,14 +18,12 @@ LAYOUTS = [
 ]
 
 
-def _ahead(ranges: List[float], layout: "tuple[float, float, int]" = LAYOUTS[0]) -> "float | None":
+def _ahead(ranges, layout=LAYOUTS[0]):
     return clearance_ahead(ranges, layout[0], layout[1], 0.12, 10.0, math.pi / 6)
 
 
 @given(st.sampled_from(LAYOUTS), st.floats(-math.pi, math.pi), st.floats(0.13, 9.9))
-def test_only_returns_within_30_degrees_of_ahead_count(
-    layout: "tuple[float, float, int]", direction: float, distance: float
-) -> None:
+def test_only_returns_within_30_degrees_of_ahead_count(layout, direction, distance):
     start, increment, count = layout
     angles = np.array([wrap_angle(start + increment * i) for i in range(count)])
     beam = int(np.argmin(np.abs(angles - direction)))
@@ -44,12 +41,12 @@ def test_only_returns_within_30_degrees_of_ahead_count(
         ([-math.inf] + [5.0] * 359, 0.0),
     ],
 )
-def test_the_nearest_valid_return_counts_and_what_is_too_near_is_at_zero(ranges: List[float], expected: float) -> None:
+def test_the_nearest_valid_return_counts_and_what_is_too_near_is_at_zero(ranges, expected):
     assert _ahead(ranges) == expected
 
 
 @pytest.mark.parametrize("valid", [math.inf, 0.0, 55.0])
-def test_a_scan_of_nan_ahead_is_invalid_but_one_valid_beam_is_enough(valid: float) -> None:
+def test_a_scan_of_nan_ahead_is_invalid_but_one_valid_beam_is_enough(valid):
     ranges = [math.nan if abs(beam - 180) > 140 else 2.0 for beam in range(360)]  # NaN within 40 degrees of ahead
     assert math.isnan(_ahead(ranges) or 0.0)
     ranges[350] = valid
@@ -59,7 +56,7 @@ def test_a_scan_of_nan_ahead_is_invalid_but_one_valid_beam_is_enough(valid: floa
 
 
 @pytest.mark.parametrize("limits", [(math.nan, 10.0), (0.12, math.nan), (0.0, 0.0), (10.0, 0.12), (0.0, -math.inf)])
-def test_a_scan_whose_range_limits_are_nan_or_leave_no_range_is_invalid(limits: "tuple[float, float]") -> None:
+def test_a_scan_whose_range_limits_are_nan_or_leave_no_range_is_invalid(limits):
     assert math.isnan(clearance_ahead([0.5] * 360, *LAYOUTS[0][:2], *limits, math.pi / 6) or 0.0)
 
 
@@ -72,10 +69,10 @@ def test_a_scan_whose_range_limits_are_nan_or_leave_no_range_is_invalid(limits: 
         *((1.0, 0.1, 10), (0.0, 0.1, 0)),  # not ahead, no beam
     ],
 )
-def test_scan_whose_beams_do_not_point_ahead_or_can_not_be_told_says_nothing(layout: Tuple[float, float, int]) -> None:
+def test_scan_whose_beams_do_not_point_ahead_or_can_not_be_told_says_nothing(layout):
     assert _ahead([0.5] * layout[2], layout) is None
 
 
-def test_a_single_beam_needs_no_increment_and_one_and_a_half_turns_are_allowed() -> None:
+def test_a_single_beam_needs_no_increment_and_one_and_a_half_turns_are_allowed():
     assert clearance_ahead([0.5], 0.0, 0.0, 0.12, 10.0, math.pi / 6) == 0.5
     assert clearance_ahead([0.5] * 360, 0.0, math.radians(539.0) / 359, 0.12, 10.0, math.pi / 6) == 0.5

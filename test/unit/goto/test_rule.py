@@ -26,7 +26,7 @@ goals = st.builds(Goal, near, near)
 
 
 @given(poses, goals)
-def test_errors_are_distance_and_bearing_from_the_robot_to_the_goal(pose: Pose2D, goal: Goal) -> None:
+def test_errors_are_distance_and_bearing_from_the_robot_to_the_goal(pose, goal):
     assert errors_to(goal, Pose2D(goal.x, goal.y, pose.yaw)) == Errors(0.0, 0.0)
     errors = errors_to(goal, pose)
     assert -math.pi <= errors.angle <= math.pi
@@ -52,16 +52,14 @@ def test_errors_are_distance_and_bearing_from_the_robot_to_the_goal(pose: Pose2D
         (5.0, -1.0, 5.0, Twist2D(0.0, 1.0)),
     ],
 )
-def test_handouts_rule_ends_the_goal_else_turns_towards_it_else_drives_straight(
-    distance: float, yaw: float, clearance: float, expected: "Outcome | Twist2D"
-) -> None:
+def test_handouts_rule_ends_the_goal_else_turns_towards_it_else_drives_straight(distance, yaw, clearance, expected):
     decision = decide(Pose2D(0.0, 0.0, yaw), clearance, Goal(distance, 0.0), P)
     assert decision.errors == Errors(distance, -yaw)
     assert decision.twist == (STANDSTILL if isinstance(expected, Outcome) else pytest.approx(expected))
     assert not isinstance(expected, Outcome) or (isinstance(decision, EndGoal) and decision.outcome is expected)
 
 
-def test_rule_asks_for_the_minimum_velocities_where_the_gains_give_less() -> None:
+def test_rule_asks_for_the_minimum_velocities_where_the_gains_give_less():
     slow = GotoParams(linear_gain=0.01, angular_gain=0.01)
     assert decide(Pose2D(), math.inf, Goal(1.0, 0.0), slow).twist == (0.03, 0.0)
     assert decide(Pose2D(), math.inf, Goal(0.0, 1.0), slow).twist == (0.0, 0.3)
@@ -79,18 +77,16 @@ def test_rule_asks_for_the_minimum_velocities_where_the_gains_give_less() -> Non
         (Twist2D(0.0, 0.9), 1.0, (0.0, 0.6)),
     ],
 )
-def test_commands_accelerate_within_limits_and_never_turn_while_driving(
-    previous: Twist2D, yaw: float, expected: "tuple[float, float]"
-) -> None:
+def test_commands_accelerate_within_limits_and_never_turn_while_driving(previous, yaw, expected):
     decision = decide(Pose2D(0.0, 0.0, yaw), math.inf, Goal(5.0, 0.0), P)
     assert limit_acceleration(previous, decision, 0.1, P) == pytest.approx(expected)
 
 
-def test_robot_stops_at_once_where_its_goal_ends() -> None:
+def test_robot_stops_at_once_where_its_goal_ends():
     assert limit_acceleration(Twist2D(0.2), decide(Pose2D(), math.inf, Goal(0.0, 0.0), P), 0.1, P) == STANDSTILL
 
 
-def test_coming_nearer_or_turning_towards_the_goal_is_progress() -> None:
+def test_coming_nearer_or_turning_towards_the_goal_is_progress():
     moved = P.stuck_distance, P.stuck_angle
     start = track_progress(None, Errors(1.0, 0.5), 0.0, *moved)
     assert track_progress(start, Errors(0.995, 0.48), 4.0, *moved).since == 0.0
@@ -99,5 +95,5 @@ def test_coming_nearer_or_turning_towards_the_goal_is_progress() -> None:
     assert track_progress(start, Errors(1.2, 0.6), 4.0, *moved).since == 0.0
 
 
-def test_value_of_an_outcome_is_its_name() -> None:
+def test_value_of_an_outcome_is_its_name():
     assert [outcome.value for outcome in Outcome] == [outcome.name for outcome in Outcome]

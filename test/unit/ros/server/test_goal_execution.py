@@ -2,7 +2,6 @@
 
 import math
 from types import SimpleNamespace
-from typing import Any, Iterable, Tuple
 
 import pytest
 from aro_robocop_goto_as.msg import GoToPositionGoal
@@ -10,7 +9,7 @@ from geometry_msgs.msg import Point
 
 from aro_robocop_goto_as.geometry import STANDSTILL, Pose2D
 from aro_robocop_goto_as.goto.params import GotoParams
-from aro_robocop_goto_as.goto.rule import Decision, EndGoal, Errors, MoveForward, Outcome, Rotate
+from aro_robocop_goto_as.goto.rule import EndGoal, Errors, MoveForward, Outcome, Rotate
 from aro_robocop_goto_as.ros.server.goal_execution import GoalExecution, feedback_of
 
 PERIOD = 100  # [ms] of the control loop
@@ -18,12 +17,12 @@ PERIODS = range(0, 600_000, PERIOD)
 BLOCKED = [Pose2D()] * len(PERIODS)  # the robot never moves
 
 
-def goal_at_x_1() -> GoalExecution:
-    inputs: Any = SimpleNamespace(odom=None)  # whose frame a text would name
+def goal_at_x_1():
+    inputs = SimpleNamespace(odom=None)  # whose frame a text would name
     return GoalExecution(GoToPositionGoal(Point(1.0, 0.0, 0.0)), inputs)
 
 
-def end_of_goal(poses: Iterable[Pose2D], goal_timeout: float = 0.0) -> Tuple[int, Outcome]:
+def end_of_goal(poses, goal_timeout=0.0):
     """The time [ms] at which a goal at x 1 ends, and how, with the robot at these poses in each period."""
     p, goal = GotoParams(goal_timeout=goal_timeout), goal_at_x_1()
     for time, pose in zip(PERIODS, poses):
@@ -34,7 +33,7 @@ def end_of_goal(poses: Iterable[Pose2D], goal_timeout: float = 0.0) -> Tuple[int
     raise AssertionError("the goal did not end")
 
 
-def test_velocity_grows_by_the_acceleration_limit_in_each_control_period() -> None:
+def test_velocity_grows_by_the_acceleration_limit_in_each_control_period():
     p, goal = GotoParams(), goal_at_x_1()
     for periods in (1, 2):
         goal.decide(Pose2D(), math.inf, p)
@@ -49,14 +48,14 @@ def test_velocity_grows_by_the_acceleration_limit_in_each_control_period() -> No
         (EndGoal(Errors(1.5, -0.25), Outcome.OBSTACLE), "obstacle"),
     ],
 )
-def test_feedback_holds_both_errors_and_what_the_robot_does(decision: Decision, text: str) -> None:
+def test_feedback_holds_both_errors_and_what_the_robot_does(decision, text):
     feedback = feedback_of(decision)
     assert (feedback.position_error, feedback.angle_error, feedback.message) == (1.5, -0.25, text)
 
 
-def test_goal_ends_at_its_timeout() -> None:
+def test_goal_ends_at_its_timeout():
     assert end_of_goal(BLOCKED, goal_timeout=3.0) == (3_000 + PERIOD, Outcome.TIMEOUT)
 
 
-def test_goal_without_progress_ends_after_the_timeout() -> None:
+def test_goal_without_progress_ends_after_the_timeout():
     assert end_of_goal(BLOCKED) == (5_000 + PERIOD, Outcome.STUCK)

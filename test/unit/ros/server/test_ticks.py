@@ -3,7 +3,6 @@
 import threading
 import time as wall
 from types import SimpleNamespace
-from typing import Any, List
 
 import pytest
 import rospy
@@ -20,10 +19,10 @@ MS = 1_000_000  # [ns]
 class Time:
     """Simulated time, whose messages rospy hands to the ticks; the answers to ticks."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, rate: float = 10.0) -> None:
+    def __init__(self, monkeypatch, rate=10.0):
         self.now = rospy.Time()
-        self.set_back: List[str] = []
-        self.answers: List[Any] = []
+        self.set_back = []
+        self.answers = []
         monkeypatch.setattr(rospy, "get_rostime", lambda: self.now)
         monkeypatch.setattr(rospy, "get_param", lambda name, default: True)
         monkeypatch.setattr(
@@ -31,37 +30,35 @@ class Time:
         )
         monkeypatch.setattr(ticks, "publisher", lambda *_: self)
         self.connections = {"answers": 1, "odom": 1}
-        odom: Any = SimpleNamespace(get_num_connections=lambda: self.connections["odom"])
+        odom = SimpleNamespace(get_num_connections=lambda: self.connections["odom"])
         self.ticks = Ticks(rate, [odom], self.set_back.append)
 
-    def get_num_connections(self) -> int:
+    def get_num_connections(self):
         """As a publisher."""
         return self.connections["answers"]
 
-    def publish(self, answer: Any) -> None:
+    def publish(self, answer):
         """As a publisher."""
         self.answers.append((answer.tick.to_nsec() // MS, answer.has_command, answer.command.linear.x))
 
-    def reach(self, milliseconds: int) -> None:
+    def reach(self, milliseconds):
         """The clock shows this time."""
         self.now = rospy.Time.from_sec(milliseconds / 1000.0)
         self._callback(Clock(self.now))
 
 
 @pytest.fixture(name="time")
-def _time(monkeypatch: pytest.MonkeyPatch) -> Time:
+def _time(monkeypatch):
     return Time(monkeypatch)
 
 
-def never() -> bool:
+def never():
     """No interruption."""
     return False
 
 
 @pytest.mark.parametrize("rate", [1, 5, 6, 7, 10, 15, 30, 60])
-def test_each_tick_of_the_simulator_is_one_and_the_nanosecond_before_is_not(
-    monkeypatch: pytest.MonkeyPatch, rate: int
-) -> None:
+def test_each_tick_of_the_simulator_is_one_and_the_nanosecond_before_is_not(monkeypatch, rate):
     time = Time(monkeypatch, rate)
     for tick in range(1, 3 * rate + 1):
         stamp, previous = stamp_ns(tick, rate), stamp_ns(tick - 1, rate)
@@ -71,9 +68,9 @@ def test_each_tick_of_the_simulator_is_one_and_the_nanosecond_before_is_not(
 
 
 @pytest.mark.parametrize("before", [0, 99])
-def test_wait_ends_at_the_next_tick(time: Time, before: int) -> None:
+def test_wait_ends_at_the_next_tick(time, before):
     time.reach(before)
-    waited: List[int] = []
+    waited = []
     waiting = threading.Thread(target=lambda: waited.append(time.ticks.wait_for_next(0, never)))
     waiting.start()
     time.reach(100)
@@ -81,7 +78,7 @@ def test_wait_ends_at_the_next_tick(time: Time, before: int) -> None:
     assert waited == [100 * MS]
 
 
-def test_ticks_go_on_when_the_wall_clock_is_set_back(time: Time, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ticks_go_on_when_the_wall_clock_is_set_back(time, monkeypatch):
     monkeypatch.setattr(rospy, "get_param", lambda name, default: default)
     begin, ahead = wall.time(), [3600.0]
     monkeypatch.setattr(rospy, "get_rostime", lambda: rospy.Time.from_sec(wall.time() + ahead[0]))
@@ -95,7 +92,7 @@ def test_ticks_go_on_when_the_wall_clock_is_set_back(time: Time, monkeypatch: py
     assert time.set_back == []
 
 
-def test_each_tick_is_answered_once_with_the_command_since_the_one_before(time: Time) -> None:
+def test_each_tick_is_answered_once_with_the_command_since_the_one_before(time):
     time.reach(0)
     for tick in (100, 100, 200):
         time.ticks.command = Twist2D(0.1, 0.0) if tick == 100 else None
@@ -105,7 +102,7 @@ def test_each_tick_is_answered_once_with_the_command_since_the_one_before(time: 
 
 
 @pytest.mark.parametrize("missing", ["answers", "odom"])
-def test_the_first_answer_waits_for_all_connections_also_while_time_stands_still(time: Time, missing: str) -> None:
+def test_the_first_answer_waits_for_all_connections_also_while_time_stands_still(time, missing):
     time.connections[missing] = 0
     time.reach(50)
     time.ticks.answer(0)
@@ -116,7 +113,7 @@ def test_the_first_answer_waits_for_all_connections_also_while_time_stands_still
     assert time.answers == [(0, False, 0.0)]
 
 
-def test_clock_that_was_set_back_is_told_with_both_times(time: Time) -> None:
+def test_clock_that_was_set_back_is_told_with_both_times(time):
     for now in (900, 1000, 1000, 300):
         time.reach(now)
     assert time.set_back == ["simulated time was set back from 1.0 to 0.3 s"]
