@@ -30,11 +30,9 @@ RUN install -d -o robocop -g robocop /home/robocop/aro_robocop_goto_as; \
 USER robocop
 WORKDIR /home/robocop/aro_robocop_goto_as
 COPY --chown=robocop:robocop . .
-# Of pybullet only its module is used: 0.3 GB less. What the first grading would build is built here, as each start would
-# repeat it.
+# What the first grading would build is built here, as each start would repeat it.
 RUN set -eu; \
     ./robocop setup $PARTS; \
-    (cd .robocop/venv/lib/python3*/site-packages; rm -rf pybullet_data eglRenderer*; strip --strip-debug pybullet*.so); \
     rm -rf ~/.cache; \
     case " $PARTS " in *" grade "*) ./robocop shell .robocop/venv/bin/python -m robocop_grading.submission ;; esac
 WORKDIR /home/robocop
