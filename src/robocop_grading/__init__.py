@@ -3,8 +3,8 @@
 From a hand-in to its grade:
 
     archive, folder, file
-      | files/        unpacked; what was handed in
-      | submission    the scripts to grade, built in a sandbox (sandbox/)
+      | files/        packed; in a sandbox (sandbox/) unpacked
+      | preparation   ... built and read there: the submission, that is the scripts to grade
       v
     runner            runs the scenarios of each part
       |

@@ -4,6 +4,7 @@ import argparse
 import contextlib
 import os
 import sys
+import tempfile
 import traceback
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +15,6 @@ from aro_robocop_goto_as.own_path import expect_own
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
 from robocop_hosting.scratch import scratch_folder
-from robocop_hosting.tree import temporary_folder
 from robocop_hosting.workspace import places
 
 from . import faults
@@ -107,12 +107,13 @@ def main() -> None:
         plan = _plan(args, share)
         given = make_report_folder(Path(args.report), REPORT_STAMP) if args.report else None
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"])
-        with scratch_folder(), temporary_folder("robocop-hand-in-") as work:
+        with scratch_folder(), tempfile.TemporaryDirectory(prefix="robocop-hand-in-") as work:
             handed_in = Path(os.path.realpath(args.path))
             if not handed_in.exists():
                 raise GradingError(f"{args.path}: expected {EXPECTED}, but nothing is there")
-            pack([handed_in], work / "hand_in.tar")
-            submission = prepare(work / "hand_in.tar", share, state, sandbox)
+            archive = Path(work, "hand_in.tar")
+            pack([handed_in], archive)
+            submission = prepare(archive, share, state, sandbox)
             if handed_in.is_file():
                 submission = replace(submission, beside=os.listdir(handed_in.parent))
             if not any(plan.examines(script.part) for script in submission.scripts):

@@ -2,11 +2,10 @@
 
 import re
 import shutil
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Mapping, Sequence
-
-from robocop_hosting.tree import temporary_folder
 
 from . import judge
 from .grades import Grade, completed
@@ -30,7 +29,7 @@ def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = Fa
     plan = runner.plan
     records: Dict[str, Mapping[str, Record]] = {}
     problems: Dict[str, str] = {}
-    with temporary_folder("robocop-grade-") as work:
+    with tempfile.TemporaryDirectory(prefix="robocop-grade-") as work:
         notes = [] if plan.is_whole else [NOT_WHOLE]
         missing: List[str] = []
         for script in (script for script in submission.scripts if plan.examines(script.part)):

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import zlib
@@ -10,7 +11,6 @@ from pathlib import Path
 from typing import List, Optional, Tuple
 
 from aro_robocop_goto_as.param_loading import several
-from robocop_hosting.tree import remove
 from robocop_hosting.workspace import exclusive
 
 from .errors import UngradableError
@@ -55,7 +55,7 @@ def _is_installed(name: str) -> bool:
 
 def _install(names: Tuple[str, ...], folder: Path) -> None:
     part = folder.with_name(f"{folder.name}.part")
-    remove(part)
+    shutil.rmtree(part, ignore_errors=True)
     pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-input", "--no-deps", "--target", str(part), *names]
     done = subprocess.run(pip, capture_output=True, text=True)
     if done.returncode != 0:

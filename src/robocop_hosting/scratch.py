@@ -8,7 +8,6 @@ from typing import Iterator, Optional
 from aro_robocop_goto_as.process import signals
 
 from . import orphans
-from .tree import temporary_folder
 
 
 @contextlib.contextmanager
@@ -21,9 +20,9 @@ def scratch_folder() -> Iterator[None]:
     previous = os.environ.get("TMPDIR")
     orphans.adopt_orphans()
     # Earlier versions remove folders called robocop-scratch-* that nobody locks.
-    with temporary_folder("robocop-temporary-") as folder:
+    with tempfile.TemporaryDirectory(prefix="robocop-temporary-") as folder:
         try:
-            _set_tmpdir(str(folder))
+            _set_tmpdir(folder)
             yield
         finally:
             signals.begin_cleanup()

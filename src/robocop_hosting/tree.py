@@ -1,9 +1,6 @@
 """Folders and their files."""
 
-import contextlib
 import os
-import subprocess
-import tempfile
 from pathlib import Path
 from typing import Collection, Iterator, List, Tuple
 from xml.etree import ElementTree
@@ -24,23 +21,6 @@ def walk(top: Path, leave_out: Collection[str] = ()) -> Iterator[Tuple[Path, Lis
         links = {name for name in folders if os.path.islink(os.path.join(path, name))}
         folders[:] = sorted({*folders} - links - {*leave_out})
         yield Path(path), folders, sorted([*files, *links])
-
-
-def remove(path: Path) -> None:
-    """Remove a file, a link or a folder with all that is in it, if it exists; HostingError if that is not possible."""
-    done = subprocess.run(["/bin/rm", "-rf", "--", str(path)], capture_output=True, stdin=subprocess.DEVNULL)
-    if done.returncode != 0:
-        raise HostingError(f"{path}: can't be removed: {done.stderr[-500:].decode(errors='replace').strip()}")
-
-
-@contextlib.contextmanager
-def temporary_folder(prefix: str) -> Iterator[Path]:
-    """A new folder in TMPDIR, removed at the end."""
-    folder = Path(tempfile.mkdtemp(prefix=prefix))
-    try:
-        yield folder
-    finally:
-        remove(folder)
 
 
 def read_bytes(path: Path) -> bytes:

@@ -83,7 +83,7 @@ def copy_sources(sources: Mapping[str, Path], folder: Path) -> None:
     HostingError if they can't be copied; links that lead nowhere are left out.
     """
     source = folder / "src"
-    tree.remove(source)
+    shutil.rmtree(source, ignore_errors=True)
     source.mkdir(parents=True)
     for name, path in sources.items():
         try:
@@ -109,7 +109,7 @@ def build_in_place(sources: Mapping[str, Path], folder: Path, underlay: Environm
     Nothing is written into their folders.
     """
     source = folder / "src"
-    tree.remove(source)
+    shutil.rmtree(source, ignore_errors=True)
     source.mkdir(parents=True)
     for name, path in sources.items():
         (source / name).symlink_to(path)

@@ -1,11 +1,11 @@
 """Collects the hand-ins of a folder, each with a digest of its content."""
 
 import contextlib
+import tempfile
 from pathlib import Path
 from typing import Collection, Dict, List, Tuple
 
 from aro_robocop_goto_as.errors import RobocopError
-from robocop_hosting.tree import temporary_folder
 
 from ..errors import GradingError, GradingSetupError
 from ..files.exports import EXPECTED, METADATA, ONLINE_TEXT, hand_in_of, is_archive, parts_of, visible
@@ -26,8 +26,8 @@ def collect(folder: Path, reserved: Collection[str] = ()) -> Tuple[Dict[str, str
             others.append(path.name)
         elif name not in hand_ins:
             hand_ins[name] = ""
-            with contextlib.suppress(RobocopError), temporary_folder("robocop-digest-") as work:  # its row says why not
-                hand_ins[name] = pack(entries_of(folder / name), work / "hand_in.tar")
+            with contextlib.suppress(RobocopError), tempfile.TemporaryDirectory() as work:  # its row says why not
+                hand_ins[name] = pack(entries_of(folder / name), Path(work, "hand_in.tar"))
     if not hand_ins:
         raise GradingSetupError(f"{folder}: no hand-ins: expected {EXPECTED} for each")
     return hand_ins, others

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, Dict, Mapping
 
 from aro_robocop_goto_as.own_path import expect_own
-from robocop_hosting import tree
 
 from ..checks import Failed
 from ..grades import CheckOutcome, CheckResult, Grade
@@ -27,7 +26,7 @@ class Results:
         self._checks = {check.name: check for check in plan.checks}
         folder.mkdir(parents=True, exist_ok=True)
         for unfinished in folder.glob(".new-*"):  # left by an interrupted run
-            tree.remove(unfinished)
+            shutil.rmtree(unfinished, ignore_errors=True)
 
     def has(self, name: str, digest: str) -> bool:
         """Return whether a hand-in was graded with its present content, plan (but for points) and grader."""
@@ -55,7 +54,7 @@ class Results:
         if final.exists():
             os.rename(final, old)
         os.rename(new, final)
-        tree.remove(old)
+        shutil.rmtree(old, ignore_errors=True)
 
     def read(self, name: str) -> Grade:
         """The result that is stored for a hand-in, with the plan's points."""

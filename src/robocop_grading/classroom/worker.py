@@ -1,12 +1,12 @@
 """Grades one hand-in of a class and stores its report; run by dask's workers."""
 
+import tempfile
 import traceback
 from dataclasses import replace
 from pathlib import Path
 from typing import Tuple
 
 from aro_robocop_goto_as.errors import RobocopError
-from robocop_hosting.tree import temporary_folder
 from robocop_hosting.workspace import places
 
 from .. import faults
@@ -28,11 +28,11 @@ def work(path: Path, plan: Plan, results: Results, unsafe: bool) -> None:
     state, share = places()
     sandbox = open_sandbox(unsafe, [state / "venv", state / "compat"])
     digest, name = "", path.name.encode("utf-8", "replace").decode()
-    with temporary_folder("robocop-class-") as top:
-        report = top / "report"
+    with tempfile.TemporaryDirectory(prefix="robocop-class-") as top:
+        report, archive = Path(top, "report"), Path(top, "hand_in.tar")
         try:
-            digest = pack(entries_of(path), top / "hand_in.tar")
-            submission = replace(prepare(top / "hand_in.tar", share, state, sandbox), name=name)
+            digest = pack(entries_of(path), archive)
+            submission = replace(prepare(archive, share, state, sandbox), name=name)
             grade(Runner(plan, state, sandbox), submission, report, moves=True)
         except UngradableError:
             raise
