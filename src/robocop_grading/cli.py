@@ -5,31 +5,31 @@ import contextlib
 import os
 import sys
 import traceback
-import zlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Callable, List, Optional, Sequence, Tuple
+from typing import Callable, List, Sequence
 
 from aro_robocop_goto_as.errors import InstallationError, ParameterError, RobocopError
 from aro_robocop_goto_as.own_path import expect_own
 from aro_robocop_goto_as.process.signals import ignore_all, interrupt_on_signal, reraise_if_interrupted
 from aro_robocop_goto_as.process.start import typed
-from robocop_hosting import tree
 from robocop_hosting.scratch import scratch_folder
-from robocop_hosting.workspace import exclusive, places
+from robocop_hosting.tree import temporary_folder
+from robocop_hosting.workspace import places
 
 from . import faults
 from .errors import GradingError, GradingSetupError, PlanError, UngradableError
-from .files import unpacking
+from .files.exports import EXPECTED
+from .files.packing import pack
 from .grader import grade as grade_submission
 from .grades import CheckOutcome, Grade
 from .plan import Plan
 from .plan_file import load
+from .preparation import prepare
 from .report.write import make_report_folder
 from .runner import Runner
-from .sandbox.bubblewrap import Sandbox, expect_private, expect_readable, open_sandbox
+from .sandbox.bubblewrap import open_sandbox
 from .scenarios import MIDDLE
-from .submission import prepare_submission
 from .texts import printable, printable_lines
 
 # Exit statuses; 2 is argparse's, 130 is the shells'.
@@ -66,26 +66,6 @@ def in_short(grade: Grade) -> List[str]:
     return [printable(line) for line in lines]  # causes may quote the submission's output
 
 
-def unpacked_path(path: str, folder: Path, sandbox: Optional[Sandbox]) -> Tuple[str, List[str]]:
-    """The path of the submission, in `folder` if it has to be unpacked, and notes about files that are not used.
-
-    GradingError for a path that a sandbox would not hide from other submissions.
-    """
-    given = Path(os.path.realpath(Path(path).expanduser()))
-    if sandbox is not None:
-        expect_private(given)
-    if given.is_file() and given.suffix.lower() in unpacking.OTHER_ARCHIVES and not unpacking.is_packed(given):
-        raise GradingError(f"{path}: can't be unpacked: expected zip or tar")
-    if not unpacking.is_packed(given):
-        if sandbox is not None:
-            expect_readable(given)
-        return path, []
-    unpacked = unpacking.unpack(given)
-    tree.remove(folder)
-    unpacked.write(folder / given.name)
-    return str(folder / given.name), unpacked.notes
-
-
 def report_folder(reports: Path, path: str) -> Path:
     """The folder with the path of the submission as it was given: names of files alone are often the same."""
     parts = [part for part in Path(os.path.normpath(path)).parts if part not in (os.sep, "//", os.pardir)]
@@ -95,7 +75,7 @@ def report_folder(reports: Path, path: str) -> Path:
 def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog=typed("grade"), description=__doc__, allow_abbrev=False)
-    parser.add_argument("path", help="a package, a server or bridge (a .py file), or a zip or tar archive of them")
+    parser.add_argument("path", help="a package, a server or bridge (a .py file), or an archive of them")
     parser.add_argument("--report", metavar="DIR", help="folder of the report (default: .robocop/reports/PATH)")
     parser.add_argument("--plan", metavar="YAML", help="limits, points and packages (default: config/grading.yaml)")
     parser.add_argument("--seed", type=int, default=MIDDLE, metavar="N", help=SEED_HELP)
@@ -127,11 +107,14 @@ def main() -> None:
         plan = _plan(args, share)
         given = make_report_folder(Path(args.report), REPORT_STAMP) if args.report else None
         sandbox = open_sandbox(args.unsafe, [state / "venv", state / "compat"])
-        folder_in_use = state / "grade" / f"{zlib.crc32(os.fsencode(os.path.realpath(args.path))):08x}"
-        with scratch_folder(), exclusive(folder_in_use):
-            path, notes = unpacked_path(args.path, folder_in_use.with_suffix(".files"), sandbox)
-            submission = prepare_submission(path, share, state, state / "grade", sandbox)
-            submission = replace(submission, notes=[*submission.notes, *notes])
+        with scratch_folder(), temporary_folder("robocop-hand-in-") as work:
+            handed_in = Path(os.path.realpath(args.path))
+            if not handed_in.exists():
+                raise GradingError(f"{args.path}: expected {EXPECTED}, but nothing is there")
+            pack([handed_in], work / "hand_in.tar")
+            submission = prepare(work / "hand_in.tar", share, state, sandbox)
+            if handed_in.is_file():
+                submission = replace(submission, beside=os.listdir(handed_in.parent))
             if not any(plan.examines(script.part) for script in submission.scripts):
                 raise GradingSetupError(f"{args.path}: nothing in it that these checks examine: {' '.join(args.only)}")
             folder = given or make_report_folder(report_folder(state / "reports", args.path), REPORT_STAMP)

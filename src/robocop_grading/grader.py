@@ -4,7 +4,7 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Mapping
+from typing import Dict, List, Mapping, Sequence
 
 from robocop_hosting.tree import temporary_folder
 
@@ -37,7 +37,9 @@ def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = Fa
             recorded = runner.run(submission, script, Path(work, script.part))
             records[script.part], problems[script.part] = recorded.records, recorded.problem
             notes += [f"{script.part}: {it}" for it in recorded.told]
-            missing += [f"{script.part}: {it}" for it in _missing_modules(recorded.records, script.path)]
+            missing += [
+                f"{script.part}: {it}" for it in _missing_modules(recorded.records, script.path.name, submission.beside)
+            ]
         judged = completed(judge.judge(submission.name, plan, records, problems), plan)
         told = dict.fromkeys([*judged.notes, *notes, *submission.notes])
         judged = replace(
@@ -54,10 +56,8 @@ def grade(runner: Runner, submission: Submission, folder: Path, moves: bool = Fa
     return judged
 
 
-def _missing_modules(records: Mapping[str, Record], script: Path) -> List[str]:
+def _missing_modules(records: Mapping[str, Record], script: str, beside: Sequence[str]) -> List[str]:
     lines = [line.text for record in records.values() for line in record.lines]
     names = sorted({name for line in lines for name in _NO_MODULE.findall(line)})
-    modules = {it: next(script.parent.glob(f"{it}.py"), script.parent / it) for it in names}  # a file or a folder
-    return [
-        BESIDE.format(path.name, script.name) if path.exists() else MISSING.format(it) for it, path in modules.items()
-    ]
+    left = {it: next((name for name in (f"{it}.py", it) if name in beside), "") for it in names}  # a file or a folder
+    return [BESIDE.format(name, script) if name else MISSING.format(it) for it, name in left.items()]

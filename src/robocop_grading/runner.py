@@ -15,8 +15,7 @@ from .attempts import counting
 from .errors import GraderLostError, UngradableError
 from .packages import provide
 from .plan import AGAIN, Plan
-from .sandbox.bubblewrap import AGENT, OWN_ENVIRONMENT, Sandbox
-from .sandbox.build import public
+from .sandbox.bubblewrap import AGENT, HAND_IN, OWN_ENVIRONMENT, Sandbox, public
 from .sandbox.guard import kernel_kills
 from .sandbox.limits import MAX_CPU_TIME
 from .session.bridge_run import BridgeRun
@@ -30,6 +29,7 @@ Progress = Callable[[str, str], None]  # part, scenario
 # [s, wall] for all scenarios of a part. A quiet machine needs ten; a right server beside sixty busy processes, six
 # minutes. A node that uses too much processor time is ended by its own limit.
 BUDGET = 3600.0
+UNPACK = f'bsdtar -x -f "$0" -C {HAND_IN} && exec "$@"'
 
 
 @dataclass(frozen=True)
@@ -76,6 +76,9 @@ class Runner:
         if self.sandbox is None:
             command = ["setpriv", "--pdeathsig", "KILL", "--", *command]  # as bubblewrap's --die-with-parent does
         else:
+            if submission.archive is not None:
+                reads.append(submission.archive)
+                command = ["sh", "-c", UNPACK, str(submission.archive), *command]
             command = self.sandbox.command_inside(command, node_environment, reads, home)
             node_environment = OWN_ENVIRONMENT
         job = Job(

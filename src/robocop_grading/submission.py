@@ -1,7 +1,6 @@
-"""A path -> the parts of the lab found there, built, with the commands that start them."""
+"""What was handed in -> the parts of the lab found there, built, with the commands that start them."""
 
 import functools
-import os
 import sys
 import tempfile
 from dataclasses import dataclass, field, replace
@@ -12,7 +11,6 @@ from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.names import PACKAGE
 from robocop_hosting import workspace
 from robocop_hosting.errors import HostingError
-from robocop_hosting.launch_file import READER
 from robocop_hosting.package import MAX_NAMED, LaunchPlan, Package, find_package, read_launch_plan
 from robocop_hosting.scripts import (
     FIRST_LINE,
@@ -29,14 +27,13 @@ from robocop_hosting.scripts import (
     start_problems,
 )
 from robocop_hosting.tree import read_text
-from robocop_hosting.workspace import CPP, Environment, compat_environment, places, workspace_name
+from robocop_hosting.workspace import CPP, Environment, compat_environment, places
 
 from .advice import advice
 from .errors import GradingError
 from .files.exports import SEVERAL, holds_class
 from .new import SKELETON, make
-from .sandbox.bubblewrap import AGENT, Sandbox, expect_private
-from .sandbox.build import build, runner_in
+from .sandbox.bubblewrap import AGENT
 
 CHANNEL = "CHANNEL"  # stands for the argument with which the agent reaches the grader
 
@@ -61,11 +58,13 @@ class Submission:
     """A server, a bridge or both, ready to be run."""
 
     name: str
-    reads: Sequence[Path]  # what it needs to read, besides the system and what every submission needs
     environment: Environment
     scripts: List[Script]
     parameters: Mapping[str, Any] = field(default_factory=dict)
     notes: Sequence[str] = ()  # what may fail in the lab and does not affect the grade
+    reads: Sequence[Path] = ()  # what it needs to read, besides the system and what every submission needs
+    archive: Optional[Path] = None  # its files for a sandbox, packed; None: they are where its scripts are
+    beside: Sequence[str] = ()  # names of what lies beside a single file, which was not handed in
 
     @property
     def files(self) -> List[str]:
@@ -73,27 +72,22 @@ class Submission:
         return [f"{script.part}: {script.shown}" for script in self.scripts]
 
 
-def prepare_submission(path: str, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
-    """The submission at `path`; a package is built, in the sandbox, in a folder of its own below `builds`.
+def find(top: Path, folder: Path, environments: Mapping[str, Environment]) -> Submission:
+    """The submission at `top`; a package is built in `folder`, on the environment of its name, or else of "".
 
     GradingError or HostingError says why there is none.
     """
-    top = Path(os.path.realpath(Path(path).expanduser()))  # resolve() raises at links in a circle, up to Python 3.12
-    if sandbox is not None:
-        expect_private(top)
     if top.is_file():
-        part = part_of(top, top.parent)
+        part = part_of(top)
         if not part:
             raise GradingError(
                 f"{top}: neither a server nor a bridge: it contains no ActionServer, no action client and no "
                 "/move_base_simple/goal"
             )
-        return _loose({part: Choice(top, None, False, [])}, top, share, state)
-    if not top.is_dir():
-        raise GradingError(f"{path}: expected a package, a server's or a bridge's file, but nothing is there")
+        return _loose({part: Choice(top, None, False, [])}, top, environments[""])
     sources = [str(file.relative_to(top)) for file in files_below(top) if file.suffix in CPP]
     try:
-        submission = _folder(top, share, state, builds, sandbox)
+        submission = _folder(top, folder, environments)
     except (GradingError, HostingError) as error:
         if not sources:
             raise
@@ -105,7 +99,7 @@ def _about_cpp(sources: Sequence[str]) -> str:
     return f"{', '.join(sources[:MAX_NAMED])}: C++ is not graded, only a server and a bridge in Python"
 
 
-def _folder(top: Path, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
+def _folder(top: Path, folder: Path, environments: Mapping[str, Environment]) -> Submission:
     """A package, or a folder with single files."""
     try:
         has_package = any(file.name == "package.xml" for file in files_below(top))
@@ -116,23 +110,20 @@ def _folder(top: Path, share: Path, state: Path, builds: Path, sandbox: Optional
             raise
         raise HostingError(f"{error}; {SEVERAL}") from error
     if package is None:
-        return _loose(choices, top, share, state)
-    submission = _package(package, share, state, builds, sandbox)
+        return _loose(choices, top, environments[""])
+    submission = _package(package, folder, environments)
     outside = [it for it in candidates(top) if package.path not in it.path.parents]
     notes = [f"{it.part}: {it.path.relative_to(top)} is outside of the package, so it is not graded" for it in outside]
     return replace(submission, name=top.name, notes=[*submission.notes, *notes])
 
 
-def _loose(choices: Mapping[str, Choice], top: Path, share: Path, state: Path) -> Submission:
+def _loose(choices: Mapping[str, Choice], top: Path, environment: Environment) -> Submission:
     """Single files in `top`, run in place, on top of the skeleton's package."""
     folder = top.parent if top.is_file() else top
-    reads = [top, _lab_folder(share, state)]  # `top` may contain helper modules
-    return _ready(top.name, folder, reads, lab_environment(share, state), LaunchPlan(choices, {}, ()), is_loose=True)
+    return _ready(top.name, folder, environment, LaunchPlan(choices, {}, ()), is_loose=True)
 
 
-def _ready(
-    name: str, top: Path, reads: Sequence[Path], environment: Environment, found: LaunchPlan, is_loose: bool = False
-) -> Submission:
+def _ready(name: str, top: Path, environment: Environment, found: LaunchPlan, is_loose: bool = False) -> Submission:
     scripts = [_script(part, choice, top) for part, choice in found.choices.items()]
     notes = list(found.notes)
     if [script.part for script in scripts] == ["server"] and listens_to_clicks(scripts[0].path):
@@ -143,7 +134,7 @@ def _ready(
         notes += [f"{script.part}: {script.path.relative_to(top)} is graded, but not {others}"] if others else []
         notes += _start_problems(script.part, found.choices[script.part], is_loose)
         notes += [f"{script.part}: {script.path.name}, {text}" for text in advice(read_text(script.path))]
-    return Submission(name, reads, environment, scripts, found.parameters, notes)
+    return Submission(name, environment, scripts, found.parameters, notes)
 
 
 def _script(part: str, choice: Choice, top: Path) -> Script:
@@ -159,13 +150,14 @@ def _script(part: str, choice: Choice, top: Path) -> Script:
 
 
 @functools.lru_cache(maxsize=None)  # the same folder all the time, even if the sources change meanwhile
-def _lab_folder(share: Path, state: Path) -> Path:
+def lab_folder(share: Path, state: Path) -> Path:
+    """The workspace of the skeleton's package."""
     return workspace.folder_for(state / "grade" / "lab", SKELETON, share / "compat")
 
 
 def lab_environment(share: Path, state: Path) -> Environment:
     """The environment with the lab's action and no code of a submission; built once."""
-    folder, underlay = _lab_folder(share, state), compat_environment(share, state)
+    folder, underlay = lab_folder(share, state), compat_environment(share, state)
 
     def build_lab() -> Environment:
         with tempfile.TemporaryDirectory() as source:
@@ -175,20 +167,18 @@ def lab_environment(share: Path, state: Path) -> Environment:
     return workspace.build_once(folder, underlay, build_lab)
 
 
-def _package(package: Package, share: Path, state: Path, builds: Path, sandbox: Optional[Sandbox]) -> Submission:
-    folder = builds / workspace_name(package.path)
-    below = [] if package.name == PACKAGE else [_lab_folder(share, state)]
-    underlay = lab_environment(share, state) if below else compat_environment(share, state)
-    environment = build(package.sources, folder, underlay, below, sandbox)
+def _package(package: Package, folder: Path, environments: Mapping[str, Environment]) -> Submission:
+    underlay = environments.get(package.name, environments[""])
+    environment = workspace.build(package.sources, folder, underlay)
     copy = folder / "src" / package.name
-    found = read_launch_plan(package, folder, environment, runner_in(sandbox, folder, [*below, READER]))
+    found = read_launch_plan(package, folder, environment)
     if not found.choices:
         names = [str(path.relative_to(copy)) for path in files_below(copy) if path.suffix == ".py"]
         raise GradingError(
             f"{package.path}: nothing to grade: expected scripts called {' or '.join(PART_OF)}, or started by the "
             f"launch file; found: {', '.join(names[:MAX_NAMED]) or 'no Python script'}"
         )
-    return _ready(package.path.name, copy, [folder, *below], environment, found)
+    return _ready(package.path.name, copy, environment, found)
 
 
 def _start_problems(part: str, choice: Choice, is_loose: bool) -> Iterator[str]:

@@ -9,12 +9,10 @@ from pathlib import Path
 from typing import Any, Dict, List, Mapping, Sequence
 
 from .errors import HostingError
-from .tree import read_bytes
-from .workspace import Environment, Run, output_of
+from .workspace import Environment, output_of
 
 READER = Path(__file__).resolve().with_name("roslaunch_reader.py")
 MAX_SHOWN = 200  # characters of an error in a message
-MAX_OUTPUT = 200_000  # bytes of nodes and parameters
 VARIABLE = re.compile(r"[A-Za-z_]\w*")
 WHILE = re.compile(r"while processing (.*):\n")  # an included file
 
@@ -49,28 +47,22 @@ class LaunchFile:
     warnings: List[str]  # of roslaunch
 
 
-def read(path: Path, top: Path, environment: Environment, run: Run, arguments: Sequence[str] = ()) -> LaunchFile:
-    """What roslaunch makes of a launch file of the package at `top`, read by `run`: a launch file may run commands.
+def read(path: Path, top: Path, environment: Environment, arguments: Sequence[str] = ()) -> LaunchFile:
+    """What roslaunch makes of a launch file of the package at `top`.
 
     `arguments`: NAME:=VALUE. HostingError with roslaunch's reason and the line if it can't be loaded.
     """
-    read_bytes(path, top)  # an ordinary file
     name = str(path.relative_to(top))
     command = [sys.executable, str(READER), str(path), *arguments]
-    status, output, errors = output_of(run, command, environment, MAX_OUTPUT)
-    if status != 0 or len(output) == MAX_OUTPUT:
-        reason = f"more than {MAX_OUTPUT // 1000} kB" if len(output) == MAX_OUTPUT else _last_line(errors)
-        raise HostingError(f"{name}: roslaunch can't read it: {reason}")
-    try:
-        values = json.loads(output)
-        if "error" in values:
-            raise HostingError(_failure(values, name, top))
-        nodes = [_node(entry, top) for entry in values["nodes"]]
-        parameters = {key: value for key, value in values["parameters"].items() if key != "/use_sim_time"}
-        return LaunchFile(nodes, parameters, [f"{name}: {it}" for it in values["warnings"]])
-    # Not the reader's: a hand-in's code has printed it.
-    except (AttributeError, KeyError, TypeError, ValueError, RecursionError) as error:
-        raise HostingError(f"{name}: roslaunch can't read it: {error!r}"[:MAX_SHOWN]) from error
+    status, output, errors = output_of(command, environment)
+    if status != 0:
+        raise HostingError(f"{name}: roslaunch can't read it: {_last_line(errors)}")
+    values = json.loads(output)
+    if "error" in values:
+        raise HostingError(_failure(values, name, top))
+    nodes = [_node(entry, top) for entry in values["nodes"]]
+    parameters = {key: value for key, value in values["parameters"].items() if key != "/use_sim_time"}
+    return LaunchFile(nodes, parameters, [f"{name}: {it}" for it in values["warnings"]])
 
 
 def _last_line(errors: str) -> str:

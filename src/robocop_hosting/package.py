@@ -14,7 +14,7 @@ from .errors import HostingError
 from .launch_file import LaunchNode, read
 from .scripts import ASIDE, PART_OF, Choice, choose, files_below
 from .tree import read_bytes, read_xml
-from .workspace import COMPAT, Environment, Run
+from .workspace import COMPAT, Environment
 
 LAUNCH_FILE = "robocop_goto_as.launch"
 NAME = re.compile(r"[A-Za-z0-9][\w-]*", re.ASCII)  # of a package, as catkin takes it
@@ -206,7 +206,7 @@ class LaunchPlan:
 
 
 def read_launch_plan(
-    package: Package, folder: Path, environment: Environment, run: Run, arguments: Sequence[str] = ()
+    package: Package, folder: Path, environment: Environment, arguments: Sequence[str] = ()
 ) -> LaunchPlan:
     """Read the launch files of a package that is built in the workspace at `folder`: the package's own one, then others
     until server and bridge are found. `arguments`: NAME:=VALUE, for the first. HostingError says what is wrong.
@@ -220,7 +220,7 @@ def read_launch_plan(
     for path in package.launch_files:
         is_main = path == package.launch_file
         try:
-            file = read(copy / path.relative_to(package.path), copy, environment, run, arguments if is_main else ())
+            file = read(copy / path.relative_to(package.path), copy, environment, arguments if is_main else ())
         except HostingError:
             if is_main:
                 raise

@@ -4,10 +4,8 @@ It is a separate program, because launch files can run commands. It imports noth
 """
 
 import json
-import os
 import reprlib
 import shlex
-import stat
 import sys
 import traceback
 import xmlrpc.client
@@ -21,7 +19,6 @@ from roslaunch.core import Node  # noqa: E402
 from roslaunch.xmlloader import XmlLoader  # noqa: E402
 
 MAX_SHOWN = 100  # characters of a parameter in a message
-MAX_VALUES = 100_000  # in a parameter
 Tags = List[Tuple[str, Dict[str, str], int]]  # name, attributes, line
 
 
@@ -87,14 +84,6 @@ def as_values(node: Node) -> Dict[str, Any]:
     }
 
 
-def count(value: Any, known: Dict[int, int]) -> int:
-    """The values in a value, those of a YAML alias counted wherever it stands; `known`: counts by id()."""
-    if id(value) not in known:
-        inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
-        known[id(value)] = 1 + sum(count(it, known) for it in inner)
-    return known[id(value)]
-
-
 def read(path: str, arguments: List[str]) -> Dict[str, Any]:
     """Nodes and parameters, or an error with its file and line."""
     config, loader = ROSLaunchConfig(), XmlLoader()
@@ -113,8 +102,6 @@ def read(path: str, arguments: List[str]) -> Dict[str, Any]:
     parameters = {str(name): parameter.value for name, parameter in config.params.items()}
     for name, value in parameters.items():
         try:
-            if count(value, {}) > MAX_VALUES:
-                raise ValueError(f"more than {MAX_VALUES} values: does an alias (*name) of YAML repeat too much?")
             xmlrpc.client.dumps((value,))  # as the parameter server gets it
             json.dumps(value)
         except (TypeError, ValueError, OverflowError, RecursionError) as error:
@@ -123,15 +110,5 @@ def read(path: str, arguments: List[str]) -> Dict[str, Any]:
     return {"nodes": nodes, "parameters": parameters, "warnings": list(map(str, config.config_errors))}
 
 
-def expect_file(event: str, arguments: Tuple[Any, ...]) -> None:
-    """Refuse to open a pipe or a device, which would not end (an audit hook of Python)."""
-    path = arguments[0] if event == "open" else None
-    if isinstance(path, (str, bytes)) and path != os.devnull and os.path.exists(path):
-        mode = os.stat(path).st_mode
-        if stat.S_ISFIFO(mode) or stat.S_ISCHR(mode):
-            raise ValueError(f"{os.fsdecode(path)}: expected an ordinary file")
-
-
 if __name__ == "__main__":
-    sys.addaudithook(expect_file)
     print(json.dumps(read(sys.argv[1], sys.argv[2:])))

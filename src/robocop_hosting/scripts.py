@@ -52,9 +52,9 @@ class Candidate(NamedTuple):
     node: Optional[LaunchNode]
 
 
-def part_of(path: Path, top: Path) -> str:
-    """ "server", "bridge", or "" for a file in `top` that is neither; any action client is a bridge here."""
-    return PART_OF.get(path.name) or _part_by_words(_words(read_bytes(path, top)), CLIENTS) or _part_by_name(path.name)
+def part_of(path: Path) -> str:
+    """ "server", "bridge", or "" for a file that is neither; any action client is a bridge here."""
+    return PART_OF.get(path.name) or _part_by_words(_words(read_bytes(path)), CLIENTS) or _part_by_name(path.name)
 
 
 def _part_by_name(name: str) -> str:
@@ -149,7 +149,7 @@ def _programs(top: Path, names: Collection[str]) -> Iterator[Tuple[Path, bytes]]
     for path in files_below(top):
         if path.name in names or path.suffix == ".py":
             try:
-                yield path, read_bytes(path, top)
+                yield path, read_bytes(path)
             except HostingError:
                 if path.name in names:
                     raise

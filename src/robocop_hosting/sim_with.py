@@ -18,7 +18,7 @@ from .errors import HostingError
 from .package import LaunchPlan, Package, arguments_of, find_package, read_launch_plan
 from .scratch import scratch_folder
 from .scripts import FIRST_LINE, NODE_NAMES, interpreter, start_problems
-from .workspace import Environment, build_in_place, compat_environment, exclusive, places, run_plain, workspace_name
+from .workspace import Environment, build_in_place, compat_environment, exclusive, places, workspace_name
 
 LACKING = re.compile("can't be built|not found|No such file")
 ABOUT_LACKING = (
@@ -39,7 +39,7 @@ def host(package: Package, share: Path, state: Path, arguments: Dict[str, str]) 
     try:
         with exclusive(folder):
             environment = build_in_place(package.sources, folder, compat_environment(share, state))
-            found = read_launch_plan(package, folder, environment, run_plain, words)
+            found = read_launch_plan(package, folder, environment, words)
     except HostingError as error:
         raise HostingError(f"{error}\n{ABOUT_LACKING}" if LACKING.search(str(error)) else str(error)) from error
     for choice in found.choices.values():

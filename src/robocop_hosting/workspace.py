@@ -18,7 +18,6 @@ from . import child, file_lock, tree
 from .errors import HostingError
 
 Environment = Dict[str, str]
-Run = Callable[[Sequence[str], Environment, "IO[bytes]", "IO[bytes]"], int]  # ..., output, errors -> exit status
 
 # Variables that catkin's setup files extend, one workspace on top of another.
 CHAINED = ("CMAKE_PREFIX_PATH", "LD_LIBRARY_PATH", "PKG_CONFIG_PATH", "PYTHONPATH", "ROS_PACKAGE_PATH")
@@ -38,8 +37,8 @@ MAX_READ = 200_000  # bytes of a log's end
 FIRST_ERROR = re.compile(r"^(CMake Error|Traceback|.*\berror: |make.*\*\*\*)", re.MULTILINE)
 
 
-def run_plain(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
-    """Run a command without a sandbox."""
+def run(command: Sequence[str], environment: Environment, output: "IO[bytes]", errors: "IO[bytes]") -> int:
+    """Run a command; its exit status."""
     process = child.start(command, environment=environment, stdout=output, stderr=errors)
     try:
         return process.wait()
@@ -47,13 +46,13 @@ def run_plain(command: Sequence[str], environment: Environment, output: "IO[byte
         child.end(process, None, 0.0)
 
 
-def output_of(run: Run, command: Sequence[str], environment: Environment, limit: int = -1) -> Tuple[int, bytes, str]:
-    """Exit status, output and errors of a command, both cut at `limit` bytes."""
+def output_of(command: Sequence[str], environment: Environment) -> Tuple[int, bytes, str]:
+    """Exit status, output and errors of a command."""
     with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
         status = run(command, environment, output, errors)
         output.seek(0)
         errors.seek(0)
-        return status, output.read(limit), errors.read(limit).decode(errors="replace")
+        return status, output.read(), errors.read().decode(errors="replace")
 
 
 def workspace_name(path: Path) -> str:
@@ -69,21 +68,16 @@ def base_environment() -> Environment:
     return sourced(Path(setup), environment) if setup else environment
 
 
-def sourced(setup: Path, environment: Environment, run: Run = run_plain) -> Environment:
+def sourced(setup: Path, environment: Environment) -> Environment:
     """The environment after bash has sourced a setup file."""
-    status, output, errors = output_of(run, ["bash", "-c", '. "$0" >/dev/null && env -0', str(setup)], environment)
+    status, output, errors = output_of(["bash", "-c", '. "$0" >/dev/null && env -0', str(setup)], environment)
     if status != 0:
         raise HostingError(f"{setup}: {errors.strip()[-MAX_SHOWN:]}")
     pairs = [entry.partition("=") for entry in os.fsdecode(output).split("\0") if entry]
     return {name: value for name, _, value in pairs}
 
 
-def copy_sources(
-    sources: Mapping[str, Path],
-    folder: Path,
-    follow_links: bool = True,
-    copy: Callable[[str, str], object] = shutil.copy2,
-) -> None:
+def copy_sources(sources: Mapping[str, Path], folder: Path) -> None:
     """Replace the sources of the workspace at `folder` by copies of packages (name -> folder).
 
     HostingError if they can't be copied; links that lead nowhere are left out.
@@ -92,10 +86,8 @@ def copy_sources(
     tree.remove(source)
     source.mkdir(parents=True)
     for name, path in sources.items():
-        for _ in tree.walk(path, LEFT_OUT):  # copytree calls itself for each level
-            pass
         try:
-            shutil.copytree(path, source / name, not follow_links, NOT_COPIED, copy, ignore_dangling_symlinks=True)
+            shutil.copytree(path, source / name, ignore=NOT_COPIED, ignore_dangling_symlinks=True)
         except OSError as error:  # shutil.Error is one
             raise HostingError(f"{path}: can't be copied: {error}") from error
         for inner, _, _ in tree.walk(source / name):
@@ -126,7 +118,7 @@ def build_in_place(sources: Mapping[str, Path], folder: Path, underlay: Environm
     if any(file.suffix in CPP for file in files):
         languages.append("cpp")
         definitions.append(f"-DCMAKE_CXX_FLAGS={CXX_FLAGS}")
-    make(folder, " and ".join(sources), underlay, run_plain, languages, definitions)
+    make(folder, " and ".join(sources), underlay, languages, definitions)
     # Where ROS looks for packages: at their own paths, too
     found = (str(path if PLAIN.fullmatch(str(path)) else source / name) for name, path in sources.items())
     (folder / "devel" / ".catkin").write_text(";".join(found))
@@ -137,7 +129,6 @@ def make(
     folder: Path,
     names: str,
     underlay: Environment,
-    run: Run = run_plain,
     languages: Sequence[str] = ("py",),
     definitions: Sequence[str] = (),
 ) -> Environment:
@@ -146,7 +137,6 @@ def make(
     definitions: -DNAME=VALUE, for CMake.
     """
     log = folder / "build.log"
-    tree.remove(log)  # whatever an earlier build made of it: open() would follow a link
     python = f"-DPYTHON_EXECUTABLE={sys.executable}"
     with open(log, "w+b") as output:
         status = run(
@@ -159,7 +149,7 @@ def make(
         text = output.read().decode(errors="replace") if status != 0 else ""
     if status != 0:
         raise HostingError(f"{names} can't be built:\n{error_of(text, folder)}\nfull log: {log}")
-    return sourced(folder / "devel" / "setup.bash", underlay, run)
+    return sourced(folder / "devel" / "setup.bash", underlay)
 
 
 def error_of(log: str, folder: Path) -> str:

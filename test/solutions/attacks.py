@@ -85,8 +85,6 @@ import os
 for _ in range(1500):
     os.mkdir('nested')
     os.chdir('nested')
-import time
-time.sleep(30.0)
 """
 BUILD_LONG_LINE = """
 import sys
@@ -94,8 +92,8 @@ sys.stdout.write('x' * 50 * 2 ** 20 + chr(27) + '[2J')
 sys.exit(1)
 """
 BUILD_LEAVES = """
-import subprocess
-subprocess.Popen(['setsid', 'sh', '-c', 'sleep 600; true', FOLDER])  # has CMake's pipe, too
+from subprocess import DEVNULL, Popen
+Popen(['setsid', 'sh', '-c', 'sleep 600; true', FOLDER], stdout=DEVNULL, stderr=DEVNULL)
 print('left running')
 """
 SPY = """

@@ -4,10 +4,11 @@ import os
 from pathlib import Path
 
 from robocop_grading import judge
+from robocop_grading.files.packing import pack
 from robocop_grading.plan_file import load
+from robocop_grading.preparation import prepare
 from robocop_grading.runner import BUDGET, Runner
 from robocop_grading.sandbox.bubblewrap import open_sandbox
-from robocop_grading.submission import prepare_submission
 
 STATE, SHARE = Path(os.environ["ROBOCOP_STATE"]), Path(os.environ["ROBOCOP_SHARE"])
 PLAN = SHARE / "config" / "grading.yaml"
@@ -18,6 +19,13 @@ def sandbox():
     opened = open_sandbox(False, [STATE / "venv", STATE / "compat"])
     assert opened is not None
     return opened
+
+
+def prepared(path, folder, opened=None):
+    """The submission at a path, by way of files in a folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    pack([path], folder / "hand_in.tar")
+    return prepare(folder / "hand_in.tar", SHARE, STATE, opened or sandbox())
 
 
 def recorded(
@@ -32,7 +40,7 @@ def recorded(
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "solution.py").write_text(text)
     opened = sandbox()
-    submission = prepare_submission(str(folder / "solution.py"), SHARE, STATE, folder, opened)
+    submission = prepared(folder / "solution.py", folder, opened)
     script, plan = submission.scripts[0], load(PLAN, seed).restricted(only)
     chosen = Runner(plan, STATE, opened, lambda _part, scenario: on_progress(scenario), budget)
     return chosen.run(submission, script, folder / "out")

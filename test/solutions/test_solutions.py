@@ -10,7 +10,7 @@ import time
 
 import pytest
 import rosbag
-from graded import PLAN, SHARE, STATE, graded, judged, recorded
+from graded import PLAN, SHARE, graded, judged, recorded
 from processes import busy_processes, processes_mentioning
 from right_solutions import HERE, RIGHT
 from wrong_solutions import ROWS, WRONG
@@ -18,10 +18,8 @@ from wrong_solutions import ROWS, WRONG
 from robocop_grading import reasons
 from robocop_grading.checks.consequences import FOLLOWS
 from robocop_grading.cli import INTERRUPTED
-from robocop_grading.errors import GradingError
 from robocop_grading.grades import CheckOutcome
 from robocop_grading.plan_file import load
-from robocop_grading.submission import prepare_submission
 
 SOME_WRONG = ("bridge_never_cancels",)
 
@@ -175,13 +173,6 @@ def test_grading_interrupted_twice_leaves_no_folders_or_processes_behind(tmp_pat
     assert "Traceback" not in (tmp_path / "output").read_text()
     assert list(scratch.iterdir()) == []
     assert processes_mentioning(scratch) == []
-
-
-def test_links_in_a_circle_are_refused(tmp_path):
-    link = tmp_path / "robocop_goto_as.py"
-    link.symlink_to(link)
-    with pytest.raises(GradingError, match="robocop_goto_as.py: expected a package, .* but nothing is there"):
-        prepare_submission(str(link), SHARE, STATE, tmp_path, None)
 
 
 def test_wrong_solutions_are_valid_python_with_unique_names_and_checks_from_the_plan():

@@ -296,7 +296,7 @@ WRONG = (
     ),
     _server(
         "publishes_stamped_commands",
-        "turns_to_goal",
+        "reaches_goal",
         "/cmd_vel is used with the wrong type, geometry_msgs/TwistStamped; its type is geometry_msgs/Twist",
         ("import Twist\n", "import Twist, TwistStamped\n"),
         ("'/cmd_vel', Twist,", "'/cmd_vel', TwistStamped,"),
@@ -476,7 +476,6 @@ ROWS = {
     ("newer_goal", None, "cancel"): "preempted_three_seconds_later",
     ("goal_behind", None, "next_goal"): "done_never_cleared",
     ("feedback_position", Kind.NOT_REACHED, "feedback_rate"): "odometry_of_another_type",
-    ("drives_straight", Kind.NOT_REACHED, "turns_to_goal"): "forged_odometry",
     ("failure_result", Kind.NOT_REACHED, "stops_at_obstacle"): "exception_in_scan",
     ("turns_to_goal", Kind.NOT_REACHED, "reaches_goal"): "exception_while_driving",
     ("reaches_goal", Kind.NOT_REACHED, "stays_alive"): "exits_with_result",

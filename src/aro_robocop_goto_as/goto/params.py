@@ -9,7 +9,7 @@ from ..param_loading import from_dict, parameter, positive
 
 MAX_LINEAR = 10.0  # [m/s], [m/s^2] far above every model's limits, to which the base controller clamps commands anyway
 MAX_ANGULAR = 100.0  # [rad/s], [rad/s^2] the same for turning
-MAX_GAIN = 100.0  # [1/s] with which all but the last millimetres are covered at maximum velocity
+MAX_GAIN = 100.0  # [1/s] with it, the robot slows down only in the last millimetres
 MIN_TOLERANCE = 1e-3  # [m], [rad] what odometry resolves
 MIN_GAIN = 0.01  # [1/s] slower than anybody waits
 MIN_SPEED = 1e-3  # [m/s], [rad/s] slower than anybody waits
@@ -35,9 +35,7 @@ class GotoParams:
         math.pi / 6.0, 0.0, math.pi, "[rad] ahead is 30 degrees to either side (the lab's skeleton)"
     )
     linear_gain: float = live(0.5, MIN_GAIN, MAX_GAIN, "[1/s] forward velocity per metre of position_error")
-    angular_gain: float = live(
-        5.0, MIN_GAIN, MAX_GAIN, "[1/s] turn per angle_error; the robot coasts into the middle of the tolerance"
-    )
+    angular_gain: float = live(5.0, MIN_GAIN, MAX_GAIN, "[1/s] angular velocity per radian of angle_error")
     max_linear_velocity: float = live(0.2, MIN_SPEED, MAX_LINEAR, "[m/s] slightly below the Burger's 0.22")
     min_linear_velocity: float = live(
         0.03, MIN_SPEED, MAX_LINEAR, "[m/s] near the goal, so that it is reached; acceleration starts below it"

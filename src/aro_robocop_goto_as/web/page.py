@@ -109,21 +109,13 @@ def corners_of(places: Iterable[Vector3]) -> np.ndarray:
     points = np.clip([(0.0, 0.0, 0.0), *places], -MAX_SHOWN, MAX_SHOWN)[:, :2]
     low, high = points.min(axis=0), points.max(axis=0)
     half, middle = np.maximum((high - low) / 2.0, ROOM / 2.0), (low + high) / 2.0
-    return box_corners(middle - half, middle + half, HEIGHT)
-
-
-def box_corners(low: np.ndarray, high: np.ndarray, height: float) -> np.ndarray:
-    """Corners (8, 3) [m] of a box on the floor between two of its corners (x, y)."""
-    return np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (0.0, height)])
+    (left, near), (right, far) = middle - half, middle + half
+    return np.array([(x, y, z) for x in (left, right) for y in (near, far) for z in (0.0, HEIGHT)])
 
 
 def axes_of(aspect: float) -> Axes:
-    """The axes of the page's cameras: steeper down in a taller scene, which a room then fills."""
-    return axes_down(min(max(1.2 / aspect, FLAT), STEEP))
-
-
-def axes_down(down: float) -> Axes:
-    """The axes of a camera that sees x to the right; down: sine of the angle at which it looks down."""
+    """The axes of the page's cameras: x to the right, steeper down in a taller scene, which a room then fills."""
+    down = min(max(1.2 / aspect, FLAT), STEEP)
     ahead = np.array((0.0, math.sqrt(1.0 - down**2), -down))
     return ahead, np.cross(RIGHT, ahead)
 

@@ -195,7 +195,7 @@ FOLLOWS = (
     Row(GOAL_CHECKS, Kind.NO_RESULT, "turns_to_goal", never_came_near),
     Row(GOAL_CHECKS, Kind.NO_RESULT, "drives_straight", never_came_near),
     Row(GOAL_CHECKS, None, "reaches_goal", same_kind),
-    Row("feedback_rate turns_to_goal cancel newer_goal", None, "reaches_goal", nothing_published),
+    Row("feedback_rate cancel newer_goal", None, "reaches_goal", nothing_published),
     Row("turns_to_goal", Kind.MOVES_FIRST, "already_there", same_kind),
     Row("stops_at_obstacle", Kind.MOVES_FIRST, "turns_to_goal", same_kind),
     Row("odd_scans", None, "stops_at_obstacle", at_wall),
@@ -212,7 +212,6 @@ FOLLOWS = (
     Row("cancels_older waits_for_server goal_frame", None, "forwards_goal", same_kind),
     # What a check needs to be reached.
     Row("feedback_position feedback_angle", Kind.NOT_REACHED, "feedback_rate"),
-    Row("drives_straight", Kind.NOT_REACHED, "turns_to_goal"),
     Row("failure_result", Kind.NOT_REACHED, "stops_at_obstacle"),
     Row(
         "turns_to_goal drives_straight success_result goal_behind far_goal already_there only_ahead_counts cancel "

@@ -6,7 +6,6 @@ from typing import Iterator, List, NamedTuple, Optional, Sequence
 
 from ..handout import HEADING_TOLERANCE, Limits
 from ..record import Command, Record, SentGoal
-from .topic_use import wrong_type
 from .verdict import PASSED, Failed, Kind, NotReached, Verdict, check
 
 WINDOW = 0.45  # [s] the angle error has to stay within a range for this long before a command is judged by it
@@ -56,12 +55,11 @@ def turns_to_goal(record: Record, limits: Limits) -> Verdict:
     judged = False
     for goal in record.goals:
         situations = _situations(record, goal, limits.turn_beyond, math.pi)
-        problem = _never_turned(record, goal, limits)
-        if problem is None and len(situations) >= ENOUGH:
-            judged = True
-            problem = _moves_first(record, goal, situations, limits) or _wrong_turn(
-                situations, limits, _aligned_before(record, goal, limits)
-            )
+        if len(situations) < ENOUGH:
+            continue
+        judged = True
+        aligned = _aligned_before(record, goal, limits)
+        problem = _moves_first(record, goal, situations, limits) or _wrong_turn(situations, limits, aligned)
         if problem is not None:
             return replace(problem, goal=goal)
     return PASSED if judged else NotReached("no command was given while angle_error was large")
@@ -106,9 +104,7 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
     still = [it for it in situations if abs(it.command.w) < MIN_SPEED]
     if len(still) > 0.5 * len(situations):
         command, angle = still[0]
-        cause = f"The robot never turned: angle_error is {angle:.2f} rad but angular.z stayed 0"
-        if len(still) < len(situations):
-            cause = f"The robot stands for some time although angle_error is {angle:.2f} rad: angular.z is 0"
+        cause = f"The robot does not turn although angle_error is {angle:.2f} rad: angular.z is 0"
         return Failed("angular.z towards the goal", "angular.z 0", command.time, cause)
     wrong = [it for it in situations if it.command.w * it.angle < 0.0]
     away = [it for it in wrong if abs(it.angle) < math.pi - 0.2]  # beyond, a right command may be of the other side
@@ -120,25 +116,6 @@ def _wrong_turn(situations: Sequence[Situation], limits: Limits, aligned: float)
             "also for large angles"
         )
         return Failed(wanted, f"angular.z {command.w:.2f}", command.time, cause)
-    return None
-
-
-def _never_turned(record: Record, goal: SentGoal, limits: Limits) -> Optional[Failed]:
-    """The failure of a robot that did not face the goal and got no command to turn."""
-    end = record.active_until(goal)
-    start = record.samples_between(goal.time, goal.time)
-    if not start or end - goal.time < 1.0:
-        return None
-    distance, angle = goal.errors_at(start[-1])
-    commands = [command for command in record.commands if goal.time <= command.time <= end]
-    if (
-        distance > NEAR
-        and abs(angle) > limits.turn_beyond
-        and not any(abs(command.w) > MIN_SPEED for command in commands)
-    ):
-        reason = "angular.z stayed 0" if commands else "nothing was published on /cmd_vel"
-        cause = wrong_type(record, "/cmd_vel") or f"The robot never turned: angle_error is {angle:.2f} rad but {reason}"
-        return Failed("angular.z towards the goal", "no command to turn", goal.time, cause, Kind.UNTURNED)
     return None
 
 

@@ -36,7 +36,6 @@ class Kind(enum.Enum):
     NO_MESSAGE = "a result without a message"
     # Motion.
     MOVES_FIRST = "motion before the errors and the distance are known"
-    UNTURNED = "no command to turn"
     LONG_TURN = "a long turn"
     MOVING = "motion after the end"
     # Feedback.

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Collection, Dict, List, Tuple
 
 from aro_robocop_goto_as.errors import RobocopError
+from robocop_hosting.tree import temporary_folder
 
 from ..errors import GradingError, GradingSetupError
-from ..files import unpacking
-from ..files.archives import Unpacked, is_archive
-from ..files.exports import EXPECTED, METADATA, ONLINE_TEXT, hand_in_of, parts_of, visible
+from ..files.exports import EXPECTED, METADATA, ONLINE_TEXT, hand_in_of, is_archive, parts_of, visible
+from ..files.packing import pack
 
 
 def collect(folder: Path, reserved: Collection[str] = ()) -> Tuple[Dict[str, str], List[str]]:
@@ -26,19 +26,24 @@ def collect(folder: Path, reserved: Collection[str] = ()) -> Tuple[Dict[str, str
             others.append(path.name)
         elif name not in hand_ins:
             hand_ins[name] = ""
-            with contextlib.suppress(RobocopError):  # its row says why
-                hand_ins[name] = unpacked(folder / name).digest
+            with contextlib.suppress(RobocopError), temporary_folder("robocop-digest-") as work:  # its row says why not
+                hand_ins[name] = pack(entries_of(folder / name), work / "hand_in.tar")
     if not hand_ins:
         raise GradingSetupError(f"{folder}: no hand-ins: expected {EXPECTED} for each")
     return hand_ins, others
 
 
-def unpacked(path: Path) -> Unpacked:
-    """The files of a hand-in; GradingError if the hand-in can't be graded, or read."""
+def entries_of(path: Path) -> List[Path]:
+    """What a hand-in consists of; GradingError if it can't be graded."""
     parts = parts_of(path)
-    is_link = any(it.is_symlink() for it in (path, *parts.values()))
-    is_file = path.is_file() and (path.suffix.lower() == ".py" or is_archive(path.name))
-    if is_link or not (parts or path.is_dir() or is_file):
-        kind = "a link" if is_link else f"a {path.suffix} file" if path.suffix else "a file without a suffix"
+    is_file = path.is_file() and (path.suffix.lower() == ".py" or is_archive(path))
+    if any(it.is_symlink() for it in (path, *parts)) or not (parts or path.is_dir() or is_file):
+        kind = (
+            "a link"
+            if path.is_symlink() or parts
+            else f"a {path.suffix} file"
+            if path.suffix
+            else "a file without a suffix"
+        )
         raise GradingError(f"{kind}: expected {EXPECTED}")
-    return unpacking.unpack(path, parts)
+    return parts or [path]

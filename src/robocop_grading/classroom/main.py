@@ -26,7 +26,7 @@ from ..grades import Grade
 from ..plan import Plan
 from ..plan_file import load
 from ..report.write import make_report_folder
-from ..sandbox.bubblewrap import expect_private, open_sandbox
+from ..sandbox.bubblewrap import open_sandbox
 from ..scenarios import MAX_SEED
 from ..submission import lab_environment
 from ..texts import printable_lines, shortened
@@ -103,9 +103,7 @@ class Gradebook:
 def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog=typed("grade-class"), description=__doc__, allow_abbrev=False)
-    parser.add_argument(
-        "folder", metavar="DIR", help="contains a folder, zip or tar archive, or Python file per hand-in"
-    )
+    parser.add_argument("folder", metavar="DIR", help="contains a folder, archive or Python file per hand-in")
     parser.add_argument("--report", metavar="DIR", help="folder of the results (default: DIR_results)")
     parser.add_argument("--plan", metavar="YAML", help="limits, points and packages (default: of the results so far)")
     parser.add_argument("--seed", type=int, metavar="N", help=CLASS_SEED)
@@ -125,8 +123,6 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
         # Anyone who can reach the port of another one can run any code on its workers, with their user's rights.
         raise GradingSetupError(f"--scheduler {args.scheduler}: expected tls://HOST:PORT, see docs/grading.md")
     out = Path(os.path.realpath(args.report or f"{folder}_results"))
-    if not args.unsafe:
-        expect_private(folder)
     expect_own(out, CLASS_STAMP, folder)
     given, folder = folder, class_folder(folder, (CSV, HTML))
     if folder != given:

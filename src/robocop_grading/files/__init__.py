@@ -1,1 +1,1 @@
-"""Other people's files: archives and folders that are not trusted; and temporary folders."""
+"""What was handed in, packed for the sandbox and unpacked in it; what the platforms of courses export."""

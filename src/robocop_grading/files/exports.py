@@ -13,14 +13,14 @@ from robocop_hosting import tree
 from robocop_hosting.scripts import ASIDE
 
 from ..errors import GradingSetupError
-from .archives import LEFT_OUT, is_archive
 
 METADATA = "submission_metadata.yml"  # written by Gradescope into what it exports
 MOODLE = re.compile(r"((.+)_(\d+))_assignsubmission_[a-z]+_?((?!\.).*)")  # full name, number of the participant, file
 ONLINE_TEXT = "_assignsubmission_onlinetext"  # what somebody has typed in Moodle, beside the files
+ARCHIVES = (".zip", ".rar", ".7z", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
 GRADESCOPE = re.compile(r"submission_\d+")
 SERVERS = re.compile(r"robocop_goto_as.*\.py")
-EXPECTED = "a folder, a zip or tar archive, or a Python file"
+EXPECTED = "a folder, an archive (zip, tar, rar, 7z) or a Python file"
 SEVERAL = f"is this folder a class? {robocop()} grade-class grades each hand-in in it"
 
 
@@ -31,6 +31,11 @@ class Person(NamedTuple):
     full_name: str = ""
     email: str = ""  # from Gradescope, as is the student's number
     sid: str = ""
+
+
+def is_archive(path: Path) -> bool:
+    """Return whether a file of this name can be unpacked."""
+    return path.name.lower().endswith(ARCHIVES)
 
 
 def visible(folder: Path) -> List[Path]:
@@ -44,10 +49,10 @@ def hand_in_of(entry: str) -> str:
     return match[1] if match else entry
 
 
-def parts_of(hand_in: Path) -> Dict[str, Path]:
-    """The entries of one participant in Moodle, by the names of their files; a folder's name is empty."""
+def parts_of(hand_in: Path) -> List[Path]:
+    """The entries of one participant in Moodle."""
     matches = ((MOODLE.fullmatch(path.name), path) for path in visible(hand_in.parent) if ONLINE_TEXT not in path.name)
-    return {match[4]: path for match, path in matches if match and match[1] == hand_in.name}
+    return [path for match, path in matches if match and match[1] == hand_in.name]
 
 
 def holds_class(folder: Path) -> bool:
@@ -73,7 +78,7 @@ def class_folder(folder: Path, reserved: Collection[str]) -> Path:
         (inner,) = entries
     if folder.is_dir() and not _is_packed_export(inner):
         return folder
-    unpack = f"; unpack it first: unzip -q -d FOLDER {shlex.quote(str(inner))}" if is_archive(inner.name) else ""
+    unpack = f"; unpack it first: unzip -q -d FOLDER {shlex.quote(str(inner))}" if is_archive(inner) else ""
     raise GradingSetupError(f"{inner}: expected a folder with {EXPECTED} for each hand-in{unpack}")
 
 
@@ -93,8 +98,8 @@ def _is_named_by_platform(path: Path) -> bool:
 def _looks_like_a_hand_in(path: Path) -> bool:
     """Return whether it is an archive, a git repository, or a folder with the handout's server."""
     if not path.is_dir() or path.is_symlink():
-        return is_archive(path.name)
-    files = (name for _, _, names in tree.walk(path, LEFT_OUT) for name in names)
+        return is_archive(path)
+    files = (name for _, _, names in tree.walk(path, (*tree.GENERATED, ".git")) for name in names)
     return not ASIDE.search(path.name) and ((path / ".git").exists() or any(map(SERVERS.fullmatch, files)))
 
 

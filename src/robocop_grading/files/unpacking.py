@@ -1,108 +1,102 @@
-"""Unpacks what was handed in, on disk or in archives, one inside another, as the platforms of courses export it."""
+"""Unpacks what was handed in, with the archives in it, one inside another; done in the sandbox."""
 
-import io
 import os
 import re
 import stat
-from pathlib import Path, PurePosixPath
-from types import MappingProxyType
-from typing import Dict, List, Mapping
-
-from robocop_hosting import tree
+import subprocess
+from pathlib import Path
+from typing import IO, List
 
 from ..errors import GradingError
-from .archives import FOLDER, LEFT_OUT, Entry, Unpacked, file_mode, is_archive, is_left_out, unpack_archive
+from .exports import is_archive
+from .packing import LEFT_OUT
 
 MAX_NESTED = 3  # archives, one inside another, in what was handed in
 MAX_NAMED = 10  # files in a message
+MB = 1024**2
 # What is graded, also under a browser's name of a second download. Archives beside it stay as they are.
 GRADED = re.compile(r"package\.xml|robocop_(goto_as|rviz_goto_ac).*\.py")
-OTHER_ARCHIVES = (".rar", ".7z", ".gz", ".bz2", ".xz", ".zst")
-TYPES = (stat.S_IFREG, stat.S_IFDIR, stat.S_IFLNK)
+COMPRESSED = (".gz", ".bz2", ".xz", ".zst")
+NOT_EMPTY = " "  # a passphrase: bsdtar would ask for one
+FULL = "No space left on device"
 
 
-def unpack(path: Path, parts: Mapping[str, Path] = MappingProxyType({})) -> Unpacked:
-    """Unpack a file, archive or folder; GradingError if it can't be read, or has nothing to grade.
+def unpack(packed: "IO[bytes]", top: Path) -> List[str]:
+    """Unpack a hand-in into a new folder; return notes about what is not used.
 
-    With `parts`, unpack a folder that consists of these: files by their names, and the content of a folder.
+    GradingError if that is not possible, or if there is nothing to grade.
     """
-    found = Unpacked()
-    try:
-        if parts:
-            found.add("", Entry(FOLDER))
-            for name, part in parts.items():
-                _add_from_disk(part, found, name)
-        elif is_archive(path.name) and path.is_file():
-            found.add("", Entry(FOLDER))
-            with open(path, "rb") as file:
-                unpack_archive(file, found)
-        else:
-            _add_from_disk(path, found)
-        if not any(it.is_file() or os.listdir(it) for it in parts.values() or [path]):
-            raise GradingError("the folder is empty")
-    except OSError as error:
-        raise GradingError(f"can't be read: {error}") from error
-    _unpack_nested(found)
-    found.notes = [*_notes(found.entries), *found.notes]
-    return found
-
-
-def is_packed(path: Path) -> bool:
-    """Return whether a path is an archive, or a folder with archives and nothing to grade outside of them."""
-    if not path.is_dir():
-        return path.is_file() and is_archive(path.name)
-    names = [name for _, _, files in tree.walk(path, LEFT_OUT) for name in files]
-    return any(map(is_archive, names)) and not any(map(GRADED.fullmatch, names))
-
-
-def _add_from_disk(path: Path, found: Unpacked, top: str = "") -> None:
-    """A file or folder, called `top`, and everything below it; links are not followed."""
-    below = (folder / name for folder, folders, files in tree.walk(path, LEFT_OUT) for name in [*folders, *files])
-    for inner in (path, *below):
-        name, status = top if inner == path else str(PurePosixPath(top, inner.relative_to(path))), os.lstat(inner)
-        mode = status.st_mode
-        if stat.S_IFMT(mode) not in TYPES:
-            raise GradingError(f"{name}: expected a file, folder or link")
-        if is_left_out(PurePosixPath(name)):
-            continue
-        if stat.S_ISREG(mode):
-            found.add_file(name, file_mode(mode), open(inner, "rb"), status.st_size)
-        else:
-            found.add(name, Entry(mode, target=os.readlink(inner) if stat.S_ISLNK(mode) else ""))
-
-
-def _unpack_nested(found: Unpacked) -> None:
-    """Replace archives by folders with their names, until there is something to grade outside of archives."""
+    top.mkdir(parents=True)
+    _extract(packed, top, top)
     for _ in range(MAX_NESTED):
-        archives = [path for path in _files(found.entries) if is_archive(path)]
-        if _has_something_to_grade(found.entries):
-            return
-        for path in archives:
-            try:
-                unpack_archive(io.BytesIO(found.entries.pop(path).content), found, path)
-            except GradingError as error:
-                raise GradingError(f"{path}: {error}") from error
+        if _has_something_to_grade(top):
+            break
+        for path in filter(is_archive, _files(top)):
+            archive = path.rename(path.with_name(f"{path.name}.packed"))
+            path.mkdir()
+            with open(archive, "rb") as file:
+                _extract(file, path, top)
+            archive.unlink()
+    return _notes(top)
 
 
-def _files(entries: Dict[str, Entry]) -> List[str]:
-    return [path for path in sorted(entries) if path and stat.S_ISREG(entries[path].mode)]
+def _extract(packed: "IO[bytes]", folder: Path, top: Path) -> None:
+    """Unpack an archive in a folder below `top`: bsdtar writes nothing above the folder, nor through a link."""
+    options = ["--no-same-owner", "--no-same-permissions", "--passphrase", NOT_EMPTY]
+    command = ["bsdtar", "-x", "-f", "-", *options, *(f"--exclude={it}" for it in LEFT_OUT), "-C", str(folder)]
+    done = subprocess.run(command, stdin=packed, capture_output=True, env={**os.environ, "LC_ALL": "C.UTF-8"})
+    subprocess.run(["chmod", "-R", "a+rX,u+w", str(top)], check=True)
+    if done.returncode != 0:
+        told, name = done.stderr.decode(errors="replace"), str(folder.relative_to(top))
+        if FULL in told:
+            largest = max(_files(top), key=lambda it: it.lstat().st_size)
+            size = largest.lstat().st_size / MB
+            raise GradingError(f"{name}: too large; the largest file in it is {largest.name} with {size:.1f} MB")
+        raise GradingError(f"{name}: can't be unpacked: {told.splitlines()[0].replace('bsdtar: ', '')}")
+    for parent, folders, files in os.walk(folder, topdown=False):
+        for name in (*folders, *files):
+            _tidy(Path(parent, name))
 
 
-def _has_something_to_grade(entries: Dict[str, Entry]) -> bool:
-    return any(GRADED.fullmatch(PurePosixPath(path).name) for path in entries)
+def _tidy(path: Path) -> None:
+    """Give a file the name that its author saw, or remove it if it is a pipe or the like."""
+    kind = path.lstat().st_mode
+    if not (stat.S_ISREG(kind) or stat.S_ISDIR(kind) or stat.S_ISLNK(kind)):
+        path.unlink()
+        return
+    name = os.fsencode(path.name)
+    try:
+        name.decode()
+    except UnicodeDecodeError:  # in a zip of a Czech Windows
+        path.rename(path.with_name(name.decode("cp852")))
 
 
-def _notes(entries: Dict[str, Entry]) -> List[str]:
-    """Notes about archives that were not unpacked; GradingError if there is nothing to grade."""
-    files = _files(entries)
-    reason = "what is graded is outside of it" if _has_something_to_grade(entries) else "more than three in one another"
-    notes = [f"{path} was not unpacked: {reason}" for path in files if is_archive(path)]
-    others = [path for path in files if path.lower().endswith(OTHER_ARCHIVES) and not is_archive(path)]
-    notes += [f"{path} was not unpacked: expected zip or tar" for path in others]
-    if stat.S_ISDIR(entries[""].mode) and not any(path.endswith((".py", "package.xml")) for path in files):
-        found = ", ".join(files[:MAX_NAMED]) + (" ..." if len(files) > MAX_NAMED else "")
-        problem = (
-            f"no package and no Python file in it, only {found}" if files else "no file in it, but for build products"
-        )
+def _paths(top: Path) -> List[Path]:
+    return sorted(Path(folder, name) for folder, folders, names in os.walk(top) for name in (*folders, *names))
+
+
+def _files(top: Path) -> List[Path]:
+    return [it for it in _paths(top) if it.is_file() and not it.is_symlink()]
+
+
+def _has_something_to_grade(top: Path) -> bool:
+    return any(GRADED.fullmatch(it.name) for it in _files(top))
+
+
+def _notes(top: Path) -> List[str]:
+    """Notes about archives that were not unpacked, and links; GradingError if there is nothing to grade."""
+    files = {it: str(it.relative_to(top)) for it in _files(top)}
+    reason = "what is graded is outside of it" if _has_something_to_grade(top) else "more than three in one another"
+    notes = [f"{name} was not unpacked: {reason}" for path, name in files.items() if is_archive(path)]
+    others = [name for name in files.values() if name.lower().endswith(COMPRESSED) and not is_archive(Path(name))]
+    notes += [f"{name} was not unpacked: it is no archive" for name in others]
+    lost = [it for it in _paths(top) if it.is_symlink() and not it.exists() and it.name[0] != "."]
+    remedy = "which was not handed in: put the file itself in its place"
+    notes += [f"{it.relative_to(top)} is a link to {os.readlink(it)}, {remedy}" for it in lost]
+    is_single = len(files) == 1 and next(iter(files)).parent == top
+    if not is_single and not any(name.endswith((".py", "package.xml")) for name in files.values()):
+        shown = ", ".join([*files.values()][:MAX_NAMED]) + (" ..." if len(files) > MAX_NAMED else "")
+        nothing = "no file in it, but for build products, videos and the like"
+        problem = f"no package and no Python file in it, only {shown}" if files else nothing
         raise GradingError("; ".join([problem, *notes]))
     return notes

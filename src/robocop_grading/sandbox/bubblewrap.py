@@ -1,8 +1,7 @@
 """bubblewrap around a submission: a network of its own, a read-only system, a home directory in memory.
 
-The node runs in its own network namespace, loopback only, with its own processes and files, as a user who owns nothing:
-it sees neither the grader's processes, bags and points nor other submissions.
-A build runs the submission's code, so it is done in the sandbox too. limits.py has the limits.
+What runs in it has its own network namespace, loopback only, its own processes, and files in memory only: it sees
+neither the grader's processes, bags and points nor other submissions. limits.py has the limits.
 """
 
 import importlib.util
@@ -17,16 +16,21 @@ from pathlib import Path
 from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from aro_robocop_goto_as.names import ROOT
+from robocop_hosting.workspace import CHAINED, Environment
 
-from ..errors import GradingError, GradingSetupError, UngradableError
+from ..errors import GradingSetupError, UngradableError
 from . import limits
 
 FIRST_USER = 200_000  # uid and gid, above those in use; root would be exempt from process limits
 USERS = 100_000
-AGENT = Path(__file__).resolve().parents[1] / "agent"  # what runs in each node
+SOURCES = Path(__file__).resolve().parents[2]  # what prepares a submission
+AGENT = SOURCES / "robocop_grading" / "agent"  # what runs in each node
+HAND_IN = Path("/hand_in")  # where a submission is unpacked and built
 SYSTEM = "/usr /bin /sbin /lib /lib32 /lib64 /opt /etc".split()
 NAME = "student"  # of the user in the sandbox; libraries look up the current user, such as getpass and matplotlib
 OWN_ENVIRONMENT = {"PATH": "/usr/bin:/bin"}  # of bwrap itself
+PUBLIC = {*CHAINED, "LANG", "LC_ALL", "PATH", "TERM"}  # variables that are passed on; others may be private
+PUBLIC_PREFIXES = ("ROS_", "ROSLISP_", "PYTHON")
 # Without these an unprivileged user's sandbox could write to the tmpfs below / and /dev without limit, and to its
 # oom_score_adj.
 SEALED = ("--remount-ro", "/", "--remount-ro", "/dev", "--remount-ro", "/proc")
@@ -40,23 +44,16 @@ CONTAINER_OPTIONS = " ".join(f"--security-opt {it}=unconfined" for it in ("secco
 
 @dataclass(frozen=True)
 class Sandbox:
-    """Builds the command lines that start a node or a build in the sandbox."""
+    """Builds the command lines that start something in the sandbox."""
 
     reads: Tuple[Path, ...]  # besides the system: what every submission needs, such as the virtual environment
 
     def command_inside(
-        self,
-        command: Sequence[str],
-        environment: Mapping[str, str],
-        reads: Sequence[Path],
-        folder: Path,
-        is_build: bool = False,
+        self, command: Sequence[str], environment: Mapping[str, str], reads: Sequence[Path], folder: Path
     ) -> List[str]:
-        """Command line of a node: reads the system and its own files, starts in a small writable `folder` in memory.
-
-        That of a build starts in `folder` itself, whose owner is user().
+        """Command line of a program that reads the system and `reads`, and writes to memory: to HAND_IN, and a little
+        to /tmp, /dev/shm and `folder`, in which it starts.
         """
-        place = _mounts("--bind", [folder]) if is_build else _writable(str(folder))
         wrap = [sys.executable, "-E", "-s", str(Path(__file__).with_name("syscall_filter.py"))]
         wrap += ["bwrap", "--die-with-parent", "--cap-drop", "ALL"]
         wrap += ["--unshare-net", "--unshare-pid", "--unshare-ipc", "--unshare-uts"]
@@ -65,22 +62,22 @@ class Sandbox:
             wrap += ["--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID", "--cap-add", "CAP_SETPCAP"]
         # Shared memory made from /dev/zero belongs to nobody, see syscall_filter.py; /dev/full can be read likewise.
         wrap += ["--proc", "/proc", "--dev", "/dev", "--dev-bind", "/dev/full", "/dev/zero"]
-        wrap += [*_writable("/tmp"), *_writable("/dev/shm")]
+        wrap += [*_writable(HAND_IN, limits.MAX_HAND_IN), *_writable(Path("/tmp")), *_writable(Path("/dev/shm"))]
         for parent in _parents([*map(Path, SYSTEM), *self.reads, *reads, folder]):
             wrap += ["--perms", "0755", "--dir", str(parent)]
         wrap += [*_mounts("--ro-bind-try", map(Path, SYSTEM)), *_mounts("--ro-bind", [*self.reads, *reads])]
         wrap += [*_hidden(Path("/etc")), *_accounts(environment.get("HOME", str(folder)))]
-        wrap += [*place, *SEALED, "--chdir", str(folder), "--"]
+        wrap += [*_writable(folder), *SEALED, "--chdir", str(folder), "--"]
         return [*wrap, *_restrictions(environment), *command]
 
 
-def expect_private(path: Path) -> None:
-    """GradingError for a submission in a place that every sandbox shows to every submission."""
-    for place in map(Path, SYSTEM):
-        if path in place.parents or {place, place.resolve()}.intersection((path, *path.parents)):
-            raise GradingError(
-                f"{path}: expected a submission outside {place}, which all submissions can read: copy it"
-            )
+def public(environment: Mapping[str, str]) -> Environment:
+    """The variables of an environment that a submission may see."""
+    return {
+        name: value
+        for name, value in environment.items()
+        if (name in PUBLIC or name.startswith(PUBLIC_PREFIXES)) and name != "ROS_MASTER_URI"
+    }
 
 
 def user() -> int:
@@ -96,13 +93,6 @@ def group() -> int:
     return user() if os.geteuid() == 0 else os.getegid()
 
 
-def change_owner(folder: Path, owner: int) -> None:
-    """Give a folder and its content to a user, without following links. Only root can do this, and only root has to."""
-    if os.geteuid() == 0:
-        # A build may have made more nested folders than Python can walk through.
-        subprocess.run(["/bin/chown", "-hRP", "--", f"{owner}:{owner}", str(folder)], check=True, capture_output=True)
-
-
 def _restrictions(environment: Mapping[str, str]) -> List[str]:
     """Arguments that set user, limits and environment inside bwrap; the environment must not reach bwrap itself."""
     cpu_time = limits.MAX_CPU_TIME
@@ -111,7 +101,7 @@ def _restrictions(environment: Mapping[str, str]) -> List[str]:
     return [
         *(["setpriv", f"--reuid={user()}", f"--regid={group()}", *drop, "--"] if os.geteuid() == 0 else []),
         *["prlimit", f"--as={limits.MAX_ADDRESS_SPACE}", f"--nproc={limits.MAX_TASKS}", f"--nofile={limits.MAX_FILES}"],
-        *[f"--fsize={limits.MAX_FILE_SIZE}", "--core=0", f"--cpu={cpu_time}:{cpu_time + limits.CPU_GRACE}", "--"],
+        *[f"--fsize={limits.MAX_HAND_IN}", "--core=0", f"--cpu={cpu_time}:{cpu_time + limits.CPU_GRACE}", "--"],
         *["env", "-i", *(f"{name}={value}" for name, value in environment.items())],
     ]
 
@@ -150,8 +140,8 @@ def _parents(paths: Sequence[Path]) -> List[Path]:
     return sorted(parents - {Path("/tmp"), *map(Path, SYSTEM)})
 
 
-def _writable(place: str) -> List[str]:
-    return ["--perms", "0777", "--size", str(limits.MAX_SPACE), "--tmpfs", place]
+def _writable(place: Path, size: int = limits.MAX_SPACE) -> List[str]:
+    return ["--perms", "0777", "--size", str(size), "--tmpfs", str(place)]
 
 
 def _mounts(option: str, paths: Iterable[Path]) -> List[str]:
@@ -167,25 +157,15 @@ def open_sandbox(unsafe: bool, reads: Sequence[Path] = ()) -> Optional[Sandbox]:
         raise GradingSetupError(f"bubblewrap is not installed; {advice}")
     if importlib.util.find_spec("seccomp") is None:
         raise GradingSetupError(f"python3-seccomp is not installed; {advice}")
-    done = _trial([AGENT, *(path for path in reads if path.exists())])
+    done = _trial([SOURCES, *(path for path in reads if path.exists())])
     if done.returncode != 0:
         if any(map(os.path.exists, CONTAINER_MARKS)):
             advice = f"`docker run {CONTAINER_OPTIONS}` lets it run in a container; {advice}"
         raise GradingSetupError(f"bubblewrap can't run here: {done.stderr.strip()}; {advice}")
-    _expect_readable(done.stdout, [ROOT, *reads])
+    if done.stdout:
+        remedy = shlex.join(["chmod", "-R", "go+rX", *map(str, [ROOT, *reads])])
+        raise GradingSetupError(f"{done.stdout.strip()}: submissions run as a user who can't read it: {remedy}")
     return Sandbox(tuple(reads))
-
-
-def expect_readable(path: Path) -> None:
-    """GradingSetupError for a submission that can't be read in the sandbox, as after unpacking it with umask 077."""
-    if path.exists():
-        _expect_readable(_trial([path]).stdout, [path])
-
-
-def _expect_readable(unreadable: str, paths: Sequence[Path]) -> None:
-    if unreadable:
-        remedy = shlex.join(["chmod", "-R", "go+rX", *map(str, paths)])
-        raise GradingSetupError(f"{unreadable.strip()}: submissions run as a user who can't read it: {remedy}")
 
 
 def _trial(shown: Sequence[Path]) -> "subprocess.CompletedProcess[str]":

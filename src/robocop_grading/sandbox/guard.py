@@ -6,24 +6,19 @@ pipes and entries of folders belongs to no process, so it is not counted.
 
 import contextlib
 import math
-import os
 import threading
 from pathlib import Path
-from typing import Callable, List, Optional, Sequence
+from typing import Callable, List, Sequence
 
 import psutil
 
-from robocop_hosting import tree
 from robocop_hosting.child import kill_tree
-from robocop_hosting.errors import HostingError
 
-from ..agent.processes import children_of, descendants_of
-from .limits import MAX_DISK, MAX_MEMORY, MAX_PROCESSES
+from ..agent.processes import descendants_of
+from .limits import MAX_MEMORY, MAX_PROCESSES
 
-MIN_FILE = 4096  # bytes that every file or folder counts at least
 PERIOD = 0.1  # [s, wall]
 COUNTERS = Path("/proc/vmstat")
-BUBBLEWRAP = "bwrap"  # the name of its processes: the one that is started, and init inside
 
 
 class Guard:
@@ -32,7 +27,6 @@ class Guard:
     def __init__(
         self,
         pid: int,
-        folder: Optional[Path] = None,
         memory: int = MAX_MEMORY,
         processor_time: float = math.inf,
         processes: float = MAX_PROCESSES,
@@ -40,13 +34,12 @@ class Guard:
     ) -> None:
         """Limits of all processes together: `memory` [bytes], `processor_time` [s], `processes`.
 
-        With the `folder` of a build, processes that a command leaves running are ended: the caller waits for the end
-        of the command's output. `used`: processor time [s] of earlier processes, which counts, too.
+        `used`: processor time [s] of earlier processes, which counts, too.
         """
         self.reason = ""  # why they were killed, if they were
         self.used = used
         self._processor_time, self._most = processor_time, processes
-        self._pid, self._folder, self._memory = pid, folder, memory
+        self._pid, self._memory = pid, memory
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True)
         self._thread.start()
@@ -67,9 +60,6 @@ class Guard:
                 self.reason = f"it started more than {self._most} processes"
             elif self.used > self._processor_time:
                 self.reason = f"its processes together used more than {self._processor_time:g} s of processor time"
-            elif self._folder is not None:
-                self.reason = _too_large(self._folder)
-                _end_left_behind(processes)
             if self.reason:
                 kill_tree(self._pid)
                 return
@@ -85,23 +75,11 @@ def kernel_kills() -> int:
 
 def _processes(pid: int) -> List["psutil.Process"]:
     """A process and its descendants that have not ended."""
-    return _found([pid, *descendants_of(pid)])
-
-
-def _found(pids: Sequence[int]) -> List["psutil.Process"]:
     found = []
-    for pid in pids:
+    for each in (pid, *descendants_of(pid)):
         with contextlib.suppress(psutil.NoSuchProcess):
-            found.append(psutil.Process(pid))
+            found.append(psutil.Process(each))
     return found
-
-
-def _end_left_behind(processes: Sequence["psutil.Process"]) -> None:
-    """End what has lost its parents: bubblewrap's init has adopted it, whose first child is the command."""
-    with contextlib.suppress(psutil.Error):  # one of them has ended
-        for init in [it for it in processes[1:2] if it.name() == processes[0].name() == BUBBLEWRAP]:
-            for orphan in sorted(_found(children_of(init.pid)), key=lambda it: (it.create_time(), it.pid))[1:]:
-                kill_tree(orphan.pid)
 
 
 def _sum(processes: Sequence["psutil.Process"], of: Callable[["psutil.Process"], float]) -> float:
@@ -129,17 +107,3 @@ def _proportional(process: "psutil.Process") -> float:
         return float(process.memory_full_info().pss)
     except psutil.AccessDenied:
         return _resident(process)
-
-
-def _too_large(folder: Path) -> str:
-    """Why a folder takes more disk than a build may, or nothing; links are not followed."""
-    used = 0
-    try:
-        for path, folders, files in tree.walk(folder):
-            used += MIN_FILE * len(folders)
-            for name in files:
-                with contextlib.suppress(OSError):  # it has been removed
-                    used += max(MIN_FILE, os.lstat(path / name).st_blocks * 512)
-    except HostingError:
-        return f"it made more than {tree.MAX_DEPTH} nested folders"
-    return f"it wrote more than {MAX_DISK / 1024**2:g} MB" if used > MAX_DISK else ""

@@ -27,7 +27,7 @@ def test_bags_are_kept_of_scenarios_in_which_a_check_failed_unless_all_are_asked
 
     monkeypatch.setattr(Runner, "run", run)
     monkeypatch.setattr("robocop_grading.report.write.write", lambda *_: None)  # its plots take seconds
-    submission = Submission("anna", (), {}, [Script("server", tmp_path / "solution.py")])
+    submission = Submission("anna", {}, [Script("server", tmp_path / "solution.py")])
     (tmp_path / "report").mkdir()
     (tmp_path / "report" / "server-right.bag").touch()
     grade(Runner(PLAN, tmp_path), submission, tmp_path / "report", all_plots=all_plots)
@@ -47,11 +47,9 @@ def test_bags_are_kept_of_scenarios_in_which_a_check_failed_unless_all_are_asked
     ],
 )
 def test_module_that_is_not_installed_or_was_left_behind_is_named(module, words, tmp_path, monkeypatch):
-    (tmp_path / "mine.py").touch()
-    (tmp_path / "folder").mkdir()
     lines = ["Traceback (most recent call last):", f"ModuleNotFoundError: No module named '{module}'"]
     record = Record("start", "server", up=False, lines=tuple(Line(0.0, line) for line in lines))
     monkeypatch.setattr(Runner, "run", lambda *_: Recorded({"start": record}))
-    submission = Submission("anna", (), {}, [Script("server", tmp_path / "solution.py")])
+    submission = Submission("anna", {}, [Script("server", tmp_path / "solution.py")], beside=["mine.py", "folder"])
     (problem,) = grade(Runner(PLAN, tmp_path), submission, tmp_path / "report").problems
     assert problem == f"server: {words}"

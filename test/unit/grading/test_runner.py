@@ -21,7 +21,7 @@ def recorded(folder, text="", **options):
     """The outcome of a server that is this program, which is started without a sandbox."""
     (folder / "server.py").write_text(text)
     script = Script("server", folder / "server.py", "node")
-    return Runner(PLAN, folder, **options).run(Submission("anna", (), {}, [script]), script, folder / "out")
+    return Runner(PLAN, folder, **options).run(Submission("anna", {}, [script]), script, folder / "out")
 
 
 @pytest.fixture

@@ -12,19 +12,17 @@ SERVER = "import rospy\nrospy.init_node('lab')\nactionlib.SimpleActionServer('ro
 
 
 def prepared(top):
-    return submission.prepare_submission(str(top), top, top, top, None)
+    return submission.find(top, top / "workspace", {"": {}})
 
 
 @pytest.mark.parametrize("other", [SERVER, "import rospy)\n"])
-def test_second_version_of_a_script_is_named_as_not_graded(tmp_path, monkeypatch, other):
-    monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
+def test_second_version_of_a_script_is_named_as_not_graded(tmp_path, other):
     for name, code in (("robocop_goto_as.py", SERVER), ("robocop_goto_as_final.py", other), ("tools.py", "")):
         (tmp_path / name).write_text(code)
     assert "server: robocop_goto_as.py is graded, but not robocop_goto_as_final.py" in prepared(tmp_path).notes
 
 
-def test_script_of_a_single_file_or_without_a_launch_file_gets_no_arguments_of_roslaunch(tmp_path, monkeypatch):
-    monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
+def test_script_of_a_single_file_or_without_a_launch_file_gets_no_arguments_of_roslaunch(tmp_path):
     (tmp_path / "robocop_goto_as.py").write_text(SERVER)
     (script,) = prepared(tmp_path).scripts
     assert script.command()[-1] == str(tmp_path / "robocop_goto_as.py")
@@ -33,7 +31,7 @@ def test_script_of_a_single_file_or_without_a_launch_file_gets_no_arguments_of_r
 def test_script_outside_of_the_package_is_named_as_not_graded(tmp_path, monkeypatch):
     files = {"lab/package.xml": "<package><name>lab</name></package>", f"lab/{NAME}": SERVER, NAME: f"{SERVER}# done\n"}
     tree(tmp_path, files)
-    empty = submission.Submission("lab", (), {}, [])
+    empty = submission.Submission("lab", {}, [])
     monkeypatch.setattr(submission, "_package", lambda *_: empty)
     assert prepared(tmp_path).notes == [f"server: {NAME} is outside of the package, so it is not graded"]
 
@@ -43,8 +41,7 @@ def test_hand_in_in_cpp_is_told_so_before_what_is_missing(tmp_path, monkeypatch,
     def build(*_):
         raise HostingError(reason)
 
-    monkeypatch.setattr(submission, "build", build)
-    monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
+    monkeypatch.setattr(submission.workspace, "build", build)
     tree(tmp_path, {"package.xml": "<package><name>lab</name></package>", "src/server.cpp": "int main() {}"})
     if launch:
         tree(tmp_path, {"launch/robocop_goto_as.launch": "<launch/>"})
@@ -60,7 +57,6 @@ def test_two_packages_of_the_same_name_may_be_a_class(tmp_path):
 
 
 @pytest.mark.parametrize("more, expected", [("Subscriber('/move_base_simple/goal')\n", 1), ("# move_base_simple\n", 0)])
-def test_bridge_in_the_servers_script_is_not_graded_without_a_word(tmp_path, monkeypatch, more, expected):
-    monkeypatch.setattr(submission, "lab_environment", lambda *_: {})
+def test_bridge_in_the_servers_script_is_not_graded_without_a_word(tmp_path, more, expected):
     (tmp_path / "lab.py").write_text(SERVER + more)
     assert sum("lab.py has a bridge, too" in note for note in prepared(tmp_path).notes) == expected

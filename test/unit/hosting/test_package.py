@@ -7,7 +7,6 @@ from hosted_packages import LAB, MANIFEST, tree
 
 from robocop_hosting.errors import HostingError
 from robocop_hosting.package import find_package, read_launch_plan
-from robocop_hosting.workspace import run_plain
 
 
 def test_package_is_found_from_its_folder_or_its_workspace(tmp_path):
@@ -166,7 +165,7 @@ def test_what_a_launch_file_asks_for_in_vain_is_named(tmp_path):
         "scripts/goto.py": "move_base_simple",
     }
     package = find_package(str(tree(tmp_path / "ws" / "src" / LAB, files)))
-    found = read_launch_plan(package, tmp_path / "ws", dict(os.environ), run_plain)
+    found = read_launch_plan(package, tmp_path / "ws", dict(os.environ))
     place = "launch/robocop_goto_as.launch, line"
     assert {part: choice.path.name for part, choice in found.choices.items()} == {
         "server": "robocop_goto_as.py",
@@ -192,7 +191,7 @@ def test_packages_are_known_that_the_launch_file_starts_itself_or_by_another_unl
     }
     package = find_package(str(tree(tmp_path / "src" / LAB, files)))
     for words, starts in (([], {"gazebo_ros", "aro_sim"}), (["all:=0"], {"aro_sim"})):
-        found = read_launch_plan(package, tmp_path, dict(os.environ), run_plain, words)
+        found = read_launch_plan(package, tmp_path, dict(os.environ), words)
         assert {node.package for node in found.others} == starts
 
 
@@ -208,6 +207,6 @@ def test_launch_file_of_the_other_part_decides_among_its_scripts(tmp_path):
         "scripts/second.py": "'move_base_simple'  # 2",
     }
     package = find_package(str(tree(tmp_path / "src" / LAB, files)))
-    found = read_launch_plan(package, tmp_path, dict(os.environ), run_plain)
+    found = read_launch_plan(package, tmp_path, dict(os.environ))
     assert found.choices["bridge"].path.name == "second.py"
     assert (found.parameters, found.notes) == ({"/n/of": "robocop_goto_as.py"}, [])

@@ -93,12 +93,14 @@ def _unsendable(params: Dict[str, Any]) -> str:
 
 def _show_overview(launcher: ROSLaunchParent, logs: Path, options: argparse.Namespace) -> None:
     """Print it when the simulator runs: if it ends at its start, its reason is the last line on the screen."""
-    nodes = launcher.config.nodes
-    expected = options.overview or any(node.name == SIMULATOR for node in nodes)
+    started = launcher.config.nodes
+    expected = options.overview or any(node.name == SIMULATOR for node in started)
     simulator = _simulator(launcher) if expected else None
     from .overview import overview  # now that everything else has started
 
     if not launcher.pm.is_shutdown:
+        running = {process.rpartition("-")[0] for process in launcher.pm.get_active_names()}
+        nodes = [node for node in started if f"{node.namespace}{node.name}".strip("/") in running]
         print(overview(nodes, simulator, logs, not options.quiet), flush=True)
 
 

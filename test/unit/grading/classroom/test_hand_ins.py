@@ -5,25 +5,25 @@ import os
 import pytest
 
 from aro_robocop_goto_as.errors import RobocopError
-from robocop_grading.classroom.hand_ins import collect, unpacked
+from robocop_grading.classroom.hand_ins import collect, entries_of
 from robocop_grading.errors import GradingError
 
 
 def problem_of(path):
-    """Why a hand-in can't be unpacked."""
+    """Why a hand-in can't be graded."""
     with pytest.raises(RobocopError) as error:
-        unpacked(path)
+        entries_of(path)
     return str(error.value)
 
 
 def test_folders_and_python_files_are_hand_ins_and_whatever_else_is_there_has_the_reason(folder):
-    for name in ("eve.rar", "fred.7z", "gina.ipynb", "hana.py.txt", "README", "grades.csv", "submission_metadata.yml"):
+    for name in ("eve.rar", "gina.ipynb", "hana.py.txt", "README", "grades.csv", "submission_metadata.yml"):
         (folder / name).write_text("")
     hand_ins, others = collect(folder, ("grades.csv",))
-    assert [name for name, digest in hand_ins.items() if digest] == ["anna", "ben.py"]
+    assert [name for name, digest in hand_ins.items() if digest] == ["anna", "ben.py", "eve.rar"]
     unread = [folder / name for name, digest in hand_ins.items() if not digest]
-    problems = {path.name: problem_of(path).partition(": expected a folder, a zip or tar")[0] for path in unread}
-    kinds = {"eve.rar": ".rar", "fred.7z": ".7z", "gina.ipynb": ".ipynb", "hana.py.txt": ".txt", "list.csv": ".csv"}
+    problems = {path.name: problem_of(path).partition(": expected a folder, an archive")[0] for path in unread}
+    kinds = {"gina.ipynb": ".ipynb", "hana.py.txt": ".txt", "list.csv": ".csv"}
     expected = {name: f"a {kind} file" for name, kind in kinds.items()}
     assert problems == {**expected, "README": "a file without a suffix", "link.py": "a link"}
     assert others == ["grades.csv", "submission_metadata.yml"], "this grader's and Gradescope's"
@@ -40,8 +40,7 @@ def test_entries_of_one_participant_in_moodle_are_one_hand_in_and_online_text_is
     hand_ins, others = collect(tmp_path)
     assert [*hand_ins] == ["Ben_2", "Eva_3.py", "Eva_3", "Novak Jan_1"] and all(hand_ins.values())
     assert others == ["Ben_2_assignsubmission_onlinetext_", "Novak Jan_1_assignsubmission_onlinetext_onlinetext.html"]
-    assert [*unpacked(tmp_path / "Novak Jan_1").entries] == ["", server, bridge]
-    assert [*unpacked(tmp_path / "Ben_2").entries] == ["", "lab", "lab/a.py"]
+    assert len(entries_of(tmp_path / "Novak Jan_1")) == 2 and len(entries_of(tmp_path / "Ben_2")) == 1
 
 
 @pytest.mark.parametrize("name", ["Eva_1_assignsubmission_file_", "Eva_1_assignsubmission_file_a.py"])
@@ -57,27 +56,6 @@ def test_digest_depends_on_contents_but_not_on_times(folder):
     (folder / "anna" / "scripts" / "robocop_goto_as.py").write_text("One")
     after, _ = collect(folder)
     assert after["anna"] != before["anna"] and after["ben.py"] == before["ben.py"]
-
-
-def test_folder_is_unpacked_with_its_links_and_without_what_was_built(folder, tmp_path):
-    (tmp_path / "secret").write_text("points")
-    (folder / "anna" / "link").symlink_to(tmp_path / "secret")
-    found, anna = unpacked(folder / "anna"), tmp_path / "out"
-    found.write(anna)
-    assert (anna / "scripts" / "robocop_goto_as.py").read_text() == "one"
-    assert (anna / "link").is_symlink() and "points" not in str(found.entries) and not (anna / "build").exists()
-
-
-def test_what_can_not_be_read_from_a_folder_states_the_reason(tmp_path):
-    for name in ("pipes", "large"):
-        (tmp_path / name).mkdir()
-    os.mkfifo(tmp_path / "pipes" / "pipe")
-    with open(tmp_path / "large" / "hole", "wb") as hole:
-        hole.truncate(10**12)
-    assert problem_of(tmp_path / "pipes") == "pipe: expected a file, folder or link"
-    assert problem_of(tmp_path / "large").startswith(
-        "larger than 64 MB; the largest file in it is hole with 953674.3 MB"
-    )
 
 
 def test_a_folder_without_hand_ins_is_refused(tmp_path):
