@@ -4,7 +4,6 @@ from dataclasses import replace
 from typing import List, Mapping, Sequence
 
 from .checks import CHECKS, Failed, NotReached, Passed, Verdict
-from .checks.topic_use import wrong_type
 from .checks.verdict import Kind
 from .faults import Faults
 from .grades import CheckOutcome, CheckResult, Grade
@@ -47,7 +46,7 @@ def _notes(records: Mapping[str, Record], plan: Plan, checks: Sequence[CheckResu
     """What to say about a part besides its checks."""
     said = _programs(records)
     if any(check.outcome is not CheckOutcome.PASSED for check in checks):
-        said += [*_unpublished(records), *_wrong_types(records, checks)]
+        said += _unpublished(records)
     return said
 
 
@@ -76,13 +75,6 @@ def _end_of(part: str, records: Mapping[str, Record], plan: Plan) -> List[str]:
         return []
     verdicts = [CHECKS[name](record, plan.limits) for record in records.values() for name in (FIRST, ALIVE)]
     return [sentences(verdict.cause) for verdict in verdicts if isinstance(verdict, Failed)][:1]
-
-
-def _wrong_types(records: Mapping[str, Record], checks: Sequence[CheckResult]) -> List[str]:
-    """Notes about topics that the node uses with a wrong type, unless a check names this as its cause."""
-    said = "".join(check.words for check in checks)
-    wrong = [wrong_type(record, topic) for record in records.values() for topic, *_ in record.other_types]
-    return [it for it in wrong if it not in said]
 
 
 def _judge(check: CheckPlan, plan: Plan, records: Mapping[str, Record], problem: str, faults: Faults) -> CheckResult:

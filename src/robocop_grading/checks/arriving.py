@@ -5,7 +5,6 @@ from typing import Optional, Sequence
 
 from ..handout import GOAL_RADIUS, Limits
 from ..record import SUCCEEDED, Record, Sample, SentGoal, wrapped
-from .consequences import ITERATION
 from .endings import of_goals, wrong_ending, wrong_success
 from .turning import MIN_SPEED
 from .verdict import Failed, Kind, NotReached, Verdict, check
@@ -32,7 +31,7 @@ def _success_too_late(record: Record, goal: SentGoal, limits: Limits) -> Optiona
     for (before, far), (after, near) in zip(way, way[1:]):
         if near < GOAL_RADIUS <= far:
             reached = before + (after - before) * (far - GOAL_RADIUS) / (far - near)
-            cause = _lateness(record, goal, record.samples_between(reached + LATE, end), limits)
+            cause = _lateness(record, record.samples_between(reached + LATE, end), limits)
             least = min(distance for _, distance in way)
             exact = cause in (WAITS, TURNS) or least < 2.0 * GOAL_RADIUS - limits.reached
             if end - reached <= (LATE_AT_REST if cause == WAITS else LATE) or not exact:
@@ -47,21 +46,15 @@ def _turned(samples: Sequence[Sample]) -> float:
     return sum(abs(wrapped(after.yaw - before.yaw)) for before, after in zip(samples, samples[1:]))
 
 
-def _lateness(record: Record, goal: SentGoal, samples: Sequence[Sample], limits: Limits) -> str:
-    """Why success is late: what the robot does meanwhile, and what the server has reported."""
+def _lateness(record: Record, samples: Sequence[Sample], limits: Limits) -> str:
+    """Why success is late, by what the robot does meanwhile."""
     begin, end = (samples[0].time, samples[-1].time) if samples else (0.0, 0.0)
     drives = any(abs(command.v) > MIN_SPEED for command in record.commands if begin <= command.time < end)
     if not drives and all(abs(sample.v) < limits.standing_v for sample in samples):
         return TURNS if _turned(samples) > LARGE_TURN else WAITS
-    own = [it.position_error for it in record.feedback_of(goal) if it.time < end - ITERATION]
-    if own and min(own) >= GOAL_RADIUS:
-        return (
-            f"The robot comes within {GOAL_RADIUS:g} m, but the last position_error in the feedback is {own[-1]:.3f} "
-            "m: is it calculated in each iteration, ten times a second, from the newest pose of /odom?"
-        )
     return (
-        f"The goal goes on although the robot is within {GOAL_RADIUS:g} m: is the threshold of position_error another "
-        "one, or is it not compared in each iteration?"
+        f"The goal goes on although the robot is within {GOAL_RADIUS:g} m: is position_error calculated in each "
+        "iteration, ten times a second, from the newest pose of /odom, and compared with this threshold?"
     )
 
 
