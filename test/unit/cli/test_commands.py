@@ -37,6 +37,7 @@ def test_each_command_prints_its_part_of_the_help_and_starts_nothing(words):
 @pytest.mark.parametrize(
     "words, reason",
     [
+        ((".",), "unknown command '.' (./robocop help lists them)"),
         (("stop",), "unknown command 'stop' (./robocop help lists them); Ctrl-C in its terminal ends what runs there"),
         (("run", "--with", "my_lab"), "run: --with is an option of sim: ./robocop sim --with PATH"),
         (("replay", "nowhere.bag"), "replay: there is no file nowhere.bag"),
