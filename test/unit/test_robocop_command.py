@@ -321,6 +321,17 @@ def test_a_build_takes_the_workspace_away_from_nothing_that_runs(quick, user):
     assert quick("clean").returncode == 0 and not state.exists()
 
 
+def test_clean_waits_for_the_end_of_a_set_up(quick, checkout):
+    root = checkout.parent / "quick"
+    set_up = os.open(root, os.O_RDONLY)
+    fcntl.flock(set_up, fcntl.LOCK_EX)
+    command = [root / "robocop", "clean"]
+    with subprocess.Popen(command, env=environment(), stderr=subprocess.PIPE, text=True) as clean:
+        assert "waiting for another set-up" in clean.stderr.readline() and (root / ".robocop").exists()
+        os.close(set_up)
+    assert clean.returncode == 0 and not (root / ".robocop").exists()
+
+
 def test_what_root_installs_and_builds_can_be_read_by_its_submissions_whatever_its_umask_is(quick, checkout):
     command = f"umask 077; exec {checkout.parent}/quick/robocop shell sh -c umask"
     done = subprocess.run(
