@@ -48,9 +48,8 @@ From the system to a browser and back, by viser:
 
 From ./robocop COMMAND to the program that does the work:
 
-    robocop                       the shell script: a state folder, a clean environment
-    cli.commands                  names the function of each command, which checks the arguments and chooses the program
-        cli.program               has the script install and build what that program needs, then becomes it
+    robocop                       the shell script: a clean environment, installs and builds, becomes the program
+        cli.commands              checks the arguments of those that take many, and chooses what the script starts
     ros.cli.launch                roslaunch, then ros.cli.overview of what it has started
     ros.cli.rviz                  RViz with a configuration of rviz/
 
