@@ -29,19 +29,19 @@ def overview(running: Sequence[Any], simulator: Optional[Dict[str, Any]], logs: 
     nodes = {node.name for node in running}
     given = simulator or {}
     rows = [] if simulator is None else [*_simulated(given)]
-    robots = sorted({node.namespace.strip("/") for node in running if node.name == SERVER} - {""})
+    served = [node.namespace.strip("/") for node in running if node.name == SERVER]  # robots; RViz shows the first
     command = _command()
     for node in running:
         if is_page(node):
             waits = "; it plays when the page is opened" if REPLAYED in node.args and "rviz" not in nodes else ""
             rows.append(("view", f"in a browser: {_page(node.args)}{waits}"))
-    if SERVER in nodes:
+    if served:
         ways = []
         if "rviz" in nodes:
             ways.append("in RViz: press 2D Nav Goal (or G), then click and drag")
         if WEB in nodes:
             ways.append("in the browser: click on the floor")
-        robot = f" --robot {robots[0]}" if robots else ""
+        robot = f" --robot {served[0]}" if served[0] else ""
         goal, note = BESIDE if given.get("moving") else IN_FRONT, ""
         if given.get("world", DEFAULT_WORLD) != DEFAULT_WORLD:
             goal, note = "X Y", "   (X and Y in map, in metres)"

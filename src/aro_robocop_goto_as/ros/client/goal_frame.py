@@ -56,7 +56,7 @@ class GoalTransformer:
             transform = self.buffer.lookup_transform(self.goal_frame, frame, stamp if at_stamp else LATEST)
         except tf2_ros.TransformException as error:
             known = yaml.safe_load(self.buffer.all_frames_as_yaml()) or ()
-            within = f"within {self.timeout:g} s: {str(error).strip()}{did_you_mean(frame, known)}"
+            within = f"within {self.timeout:g} s: {str(error).strip(' .')}{did_you_mean(frame, known)}"
             raise FrameError(f"{what} {within}") from error
         if not at_stamp:
             time = f"at the goal's time {stamp.to_sec():.3f} within {self.timeout:g} s"

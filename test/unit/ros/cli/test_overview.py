@@ -77,6 +77,11 @@ def test_the_world_and_a_goal_that_can_be_reached_in_it_are_shown(simulator, wor
     assert ("transforms" in text) is ("odom_tf" in simulator)
 
 
+def test_a_goal_is_offered_for_the_first_robot_which_rviz_shows():
+    servers = [SimpleNamespace(name=SERVER, namespace=f"/{robot}/", args="") for robot in ("red", "blue")]
+    assert "goto 0.3 0 --robot red\n" in overview(servers, {}, Path("/logs"), False)
+
+
 def test_a_hosted_packages_own_messages_are_known_to_a_second_terminal_by_the_line_that_is_shown(monkeypatch):
     monkeypatch.setenv("ROBOCOP_WS", "/own/devel")
     for devel in ("/own/devel", "/with/lab/devel"):
