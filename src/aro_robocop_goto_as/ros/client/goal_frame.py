@@ -4,11 +4,9 @@ import ros_numpy
 import rospy
 import tf2_geometry_msgs
 import tf2_ros
-import yaml
 from geometry_msgs.msg import Point, PointStamped, PoseStamped
 
 from ...errors import FrameError
-from ...suggestions import did_you_mean
 from .. import convert
 from ..waiting import wait_until
 
@@ -55,9 +53,7 @@ class GoalTransformer:
         try:
             transform = self.buffer.lookup_transform(self.goal_frame, frame, stamp if at_stamp else LATEST)
         except tf2_ros.TransformException as error:
-            known = yaml.safe_load(self.buffer.all_frames_as_yaml()) or ()
-            within = f"within {self.timeout:g} s: {str(error).strip(' .')}{did_you_mean(frame, known)}"
-            raise FrameError(f"{what} {within}") from error
+            raise FrameError(f"{what} within {self.timeout:g} s: {str(error).strip()}") from error
         if not at_stamp:
             time = f"at the goal's time {stamp.to_sec():.3f} within {self.timeout:g} s"
             rospy.logwarn("%s %s; using the latest one", what, time)
