@@ -80,13 +80,13 @@ def read(packed: "IO[bytes]", folder: Path, environments: Mapping[str, Environme
     """
     notes: List[str] = []
     try:
-        files = folder / "files"
+        files = folder / "hand_in"
         notes += unpack(packed, files)
         entries = [*files.iterdir()]
         submission = find(entries[0] if len(entries) == 1 else files, folder / "workspace", environments)
     except (GradingError, HostingError) as error:
         text = str(error).partition(f"\nfull log: {folder}")[0]
-        for place in (f"{folder}/files/", f"{folder}/"):
+        for place in (f"{folder}/hand_in/", f"{folder}/"):
             text = text.replace(place, "")
         raise GradingError("\n".join([text, *notes])) from error
     return replace(submission, notes=[*submission.notes, *notes])

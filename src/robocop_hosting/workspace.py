@@ -89,7 +89,8 @@ def copy_sources(sources: Mapping[str, Path], folder: Path) -> None:
         try:
             shutil.copytree(path, source / name, ignore=NOT_COPIED, ignore_dangling_symlinks=True)
         except OSError as error:  # shutil.Error is one
-            raise HostingError(f"{path}: can't be copied: {error}") from error
+            first = error.args[0][0][-1] if isinstance(error, shutil.Error) else error  # of one for each file
+            raise HostingError(f"{path}: can't be copied: {first}") from error
         for inner, _, _ in tree.walk(source / name):
             os.chmod(inner, os.stat(inner).st_mode | 0o700)  # a copy of a read-only folder can't be removed
 

@@ -2,6 +2,7 @@
 
 import os
 import re
+import signal
 import stat
 import subprocess
 from pathlib import Path
@@ -48,7 +49,7 @@ def _extract(packed: "IO[bytes]", folder: Path, top: Path) -> None:
     subprocess.run(["chmod", "-R", "a+rX,u+w", str(top)], check=True)
     if done.returncode != 0:
         told, name = done.stderr.decode(errors="replace"), str(folder.relative_to(top))
-        if FULL in told:
+        if FULL in told or done.returncode == -signal.SIGXFSZ:
             largest = max(_files(top), key=lambda it: it.lstat().st_size)
             size = largest.lstat().st_size / MB
             raise GradingError(f"{name}: too large; the largest file in it is {largest.name} with {size:.1f} MB")

@@ -70,5 +70,5 @@ def test_sources_are_copied_without_links_that_lead_nowhere_as_editors_make_them
     assert [path.name for path in (tmp_path / "workspace" / "src" / "lab").iterdir()] == ["server.py"]
     (source / "pipe").mkdir(mode=0)
     os.mkfifo(source / "fifo")
-    with pytest.raises(HostingError, match="lab: can't be copied"):
+    with pytest.raises(HostingError, match="lab: can't be copied: [^(]*$"):
         copy_sources({"lab": source}, tmp_path / "workspace")
