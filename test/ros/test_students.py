@@ -176,7 +176,7 @@ def test_node_with_its_neighbours_messages_ends_and_is_named_beside_the_overview
         done = system.call("bash", "-c", f"{setup} && rosmsg show drive_msgs/Side && rospack find drive")
         assert done.stdout == f"float32 length\n\n{script.parents[1]}\n"
         done = system.call("rosrun", "aro_robocop_goto_as", "robocop_goto.py", "0.3", "0.3")
-        assert "start the system again" in done.stdout and "rosrun" not in done.stdout, done.stdout
+        assert "the terminal of its system says why" in done.stdout and "rosrun" not in done.stdout, done.stdout
         system.end()
 
 

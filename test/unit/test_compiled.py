@@ -75,7 +75,7 @@ import pytest
 from aro_robocop_goto_as import compiled
 folder, *arguments = sys.argv[1:]
 compiled.find = lambda name: os.path.join(folder, compiled.file_name(name))
-sys.exit(pytest.main(["-n", "0", "-p", "no:cacheprovider", "--capture=sys", *arguments]))
+sys.exit(pytest.main(["-n", "0", "--capture=sys", *arguments]))
 """
 TESTS = (
     *("physics/test_kinematic.py", "raycast/test_compiled_beams.py", "sensors/test_lidar.py"),

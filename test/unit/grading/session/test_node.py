@@ -101,7 +101,7 @@ def test_a_node_that_does_nothing_is_ended_with_the_reason(do, did, started, mon
 
 
 def test_an_answer_that_has_come_counts_although_the_time_for_it_is_over(started, monkeypatch):
-    monkeypatch.setattr(module, "POLL", 60.0)
+    monkeypatch.setattr(module, "POLL_PERIOD", 60.0)
     monkeypatch.setattr(module, "MAX_IDLE", -1.0)
     assert started("pass").turn() is None
 
