@@ -13,17 +13,16 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import IO, Any, List, Mapping, Optional, Sequence
 
-from aro_robocop_goto_as.names import PACKAGE
 from robocop_hosting import child
 from robocop_hosting.errors import HostingError
-from robocop_hosting.workspace import Environment, compat_environment
+from robocop_hosting.workspace import Environment
 
 from .errors import GradingError
 from .files.unpacking import unpack
 from .sandbox.bubblewrap import HAND_IN, OWN_ENVIRONMENT, SOURCES, Sandbox, public
 from .sandbox.guard import Guard
 from .sandbox.limits import MAX_PREPARATION_CPU_TIME, PREPARATION_TIMEOUT
-from .submission import Script, Submission, find, lab_environment, lab_folder
+from .submission import Script, Submission, build_environments, find, lab_folder
 
 MAX_SHOWN = 4_000  # characters of the program's errors
 
@@ -33,7 +32,7 @@ def prepare(archive: Path, share: Path, state: Path, sandbox: Optional[Sandbox])
 
     GradingError says why there is none.
     """
-    environments = {PACKAGE: compat_environment(share, state), "": lab_environment(share, state)}
+    environments = build_environments(share, state)
     reads = [lab_folder(share, state)]
     with open(archive, "rb") as packed:
         if sandbox is None:

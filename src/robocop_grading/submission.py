@@ -5,7 +5,7 @@ import sys
 import tempfile
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Iterator, List, Mapping, Optional, Sequence
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence
 
 from aro_robocop_goto_as.errors import RobocopError
 from aro_robocop_goto_as.names import PACKAGE
@@ -155,8 +155,8 @@ def lab_folder(share: Path, state: Path) -> Path:
     return workspace.folder_for(state / "grade" / "lab", SKELETON, share / "compat")
 
 
-def lab_environment(share: Path, state: Path) -> Environment:
-    """The environment with the lab's action and no code of a submission; built once."""
+def build_environments(share: Path, state: Path) -> Dict[str, Environment]:
+    """What packages are built on, by their names; "" for any other than the lab's, on top of its action. Built once."""
     folder, underlay = lab_folder(share, state), compat_environment(share, state)
 
     def build_lab() -> Environment:
@@ -164,7 +164,7 @@ def lab_environment(share: Path, state: Path) -> Environment:
             make(Path(source, PACKAGE))
             return workspace.build({PACKAGE: Path(source, PACKAGE)}, folder, underlay)
 
-    return workspace.build_once(folder, underlay, build_lab)
+    return {PACKAGE: underlay, "": workspace.build_once(folder, underlay, build_lab)}
 
 
 def _package(package: Package, folder: Path, environments: Mapping[str, Environment]) -> Submission:
@@ -205,7 +205,7 @@ def main() -> None:
     """Build what the first grading would build: the lab's action and compat/. Exit status 1 if that fails."""
     try:
         state, share = places()
-        lab_environment(share, state)
+        build_environments(share, state)
     except RobocopError as error:
         sys.exit(f"robocop setup: {error}")
 

@@ -28,7 +28,7 @@ from ..plan_file import load
 from ..report.write import make_report_folder
 from ..sandbox.bubblewrap import open_sandbox
 from ..scenarios import MAX_SEED
-from ..submission import lab_environment
+from ..submission import build_environments
 from ..texts import printable_lines, shortened
 from .hand_ins import collect
 from .overview import page
@@ -144,7 +144,7 @@ def grade_class(args: argparse.Namespace) -> Gradebook:
         print(f"scenarios: seed {plan.seed}", flush=True)
         if not args.scheduler:
             open_sandbox(args.unsafe)
-            lab_environment(share, state)
+            build_environments(share, state)
         workers = args.workers or len(os.sched_getaffinity(0))
         grade_waiting(gradebook, args.scheduler, workers, partial(work, plan=plan, results=results, unsafe=args.unsafe))
     return gradebook

@@ -8,13 +8,15 @@ import subprocess
 from pathlib import Path
 from typing import IO, List
 
+from robocop_hosting import tree
+
 from ..errors import GradingError
+from ..sandbox.limits import MB
 from .exports import is_archive
 from .packing import LEFT_OUT
 
 MAX_NESTED = 3  # archives, one inside another, in what was handed in
 MAX_NAMED = 10  # files in a message
-MB = 1024**2
 # What is graded, also under a browser's name of a second download. Archives beside it stay as they are.
 GRADED = re.compile(r"package\.xml|robocop_(goto_as|rviz_goto_ac).*\.py")
 COMPRESSED = (".gz", ".bz2", ".xz", ".zst")
@@ -72,12 +74,12 @@ def _tidy(path: Path) -> None:
         path.rename(path.with_name(name.decode("cp852")))
 
 
-def _paths(top: Path) -> List[Path]:
-    return sorted(Path(folder, name) for folder, folders, names in os.walk(top) for name in (*folders, *names))
+def _files_and_links(top: Path) -> List[Path]:
+    return sorted(folder / name for folder, _, names in tree.walk(top) for name in names)
 
 
 def _files(top: Path) -> List[Path]:
-    return [it for it in _paths(top) if it.is_file() and not it.is_symlink()]
+    return [it for it in _files_and_links(top) if it.is_file() and not it.is_symlink()]
 
 
 def _has_something_to_grade(top: Path) -> bool:
@@ -91,7 +93,7 @@ def _notes(top: Path) -> List[str]:
     notes = [f"{name} was not unpacked: {reason}" for path, name in files.items() if is_archive(path)]
     others = [name for name in files.values() if name.lower().endswith(COMPRESSED) and not is_archive(Path(name))]
     notes += [f"{name} was not unpacked: it is no archive" for name in others]
-    lost = [it for it in _paths(top) if it.is_symlink() and not it.exists() and it.name[0] != "."]
+    lost = [it for it in _files_and_links(top) if it.is_symlink() and not it.exists() and it.name[0] != "."]
     remedy = "which was not handed in: put the file itself in its place"
     notes += [f"{it.relative_to(top)} is a link to {os.readlink(it)}, {remedy}" for it in lost]
     is_single = len(files) == 1 and next(iter(files)).parent == top

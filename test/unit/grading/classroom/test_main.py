@@ -35,7 +35,7 @@ def grade_class(folder, monkeypatch):
         monkeypatch.setenv("ROBOCOP_STATE", str(folder.parent / "state"))
         monkeypatch.setenv("ROBOCOP_SHARE", ROOT)
         monkeypatch.setattr(main, "grade_waiting", stand_in)
-        monkeypatch.setattr(main, "lab_environment", lambda *_: None)
+        monkeypatch.setattr(main, "build_environments", lambda *_: None)
         given = {"folder": str(hand_ins), "report": report, "plan": plan and str(plan), "seed": seed}
         gradebook = main.grade_class(Namespace(**{"workers": 1, "scheduler": "", "unsafe": True, **given, **options}))
         return ran, gradebook
